@@ -1,4 +1,4 @@
-"""Test clients of the board's protocol, in memory and virtual time."""
+"""Clients that speak the board's protocol with an application in memory and in virtual time."""
 
 import asyncio
 import contextlib
@@ -46,18 +46,18 @@ async def talk(ctx: rs.RuleContext) -> None:
 
 @gossip.rule(when=cheered)
 async def bow(ctx: rs.RuleContext) -> None:
-    """Accept a payload."""
+    """Do nothing; the signal carries a payload."""
 
 
 async def passing(seconds: float) -> None:
-    """Wait for virtual time."""
+    """Wait for some seconds of virtual time."""
     loop = asyncio.get_running_loop()
     assert isinstance(loop, VirtualLoop)
     await Clock(loop).sleep(seconds)
 
 
 class Loop(VirtualLoop):
-    """A virtual loop that runs work for threads at once."""
+    """A virtual loop that runs work for an executor at once, without a thread."""
 
     def run_in_executor(self, executor: Any, func: Any, *args: Any) -> Any:
         """Run the function at once."""
@@ -88,7 +88,7 @@ async def board(
     title: str | None = "Elske",
     **settings: Any,
 ) -> AsyncGenerator[Starlette]:
-    """Serve the page of an agent with its board."""
+    """Serve the chat page of an agent, and its board."""
     agent = RecordedAgent(*(modules or (gossip, parrot)), webio, settings={"webio": settings})
     beside = routes(agent.recorders if recorded else None, recording, title)
     app = webio.app(agent, beside, INSIDE)
@@ -97,17 +97,17 @@ async def board(
 
 
 class Look(Visit):
-    """One inspector: ``async with Look(app) as look``."""
+    """A connection to the board, as an inspector: ``async with Look(app) as look``."""
 
     def __init__(self, app: Starlette, **headers: str) -> None:
         async def at_board(scope: Any, receive: Any, send: Any) -> None:
             await app({**scope, "path": "/board/ws", "raw_path": b"/board/ws"}, receive, send)
 
-        super().__init__(at_board, **headers)  # type: ignore[arg-type]  # it is called like one
+        super().__init__(at_board, **headers)  # type: ignore[arg-type]  # called like an application
         self.records: list[dict[str, Any]] = []
 
     async def begin(self, **fields: Any) -> dict[str, Any]:
-        """Say hello and return the welcome; the state that follows is read, too."""
+        """Say hello, read the welcome and the state after it, and return the welcome."""
         self.tell("hello", v=1, **fields)
         welcome = await self.next()
         if welcome["type"] == "welcome":
@@ -115,7 +115,7 @@ class Look(Visit):
         return welcome
 
     async def answer(self, type: str) -> dict[str, Any]:
-        """Return the next frame of a type, and collect records on the way."""
+        """Return the next frame of a type. Collect the records of the frames before it."""
         while True:
             frame = await self.next()
             if frame["type"] == "records":
@@ -124,13 +124,13 @@ class Look(Visit):
                 return frame
 
     async def until(self, kind: str, **fields: Any) -> dict[str, Any]:
-        """Return a record of a kind with these fields, and wait for it if necessary."""
+        """Wait for a record of a kind with these fields, and return it."""
         while (found := self.found(kind, **fields)) is None:
             await self.answer("records")
         return found
 
     def found(self, kind: str, **fields: Any) -> dict[str, Any] | None:
-        """Return the first record so far of a kind with these fields."""
+        """Return the first collected record of a kind with these fields; None if there is none."""
         return next(
             (r for r in self.records if r["kind"] == kind and all(r.get(k) == v for k, v in fields.items())),
             None,

@@ -1,4 +1,4 @@
-"""The board's routes: uploads of recordings."""
+"""The board's routes: uploads of recordings, other sites, and mounting."""
 
 import asyncio
 import json
@@ -68,13 +68,13 @@ def test_simultaneous_uploads_are_read_one_at_a_time(trace: bytes, monkeypatch: 
 
 
 async def drops(data: bytes, every: float, each: int) -> AsyncGenerator[bytes]:
-    """Yield data in parts, with seconds between them."""
+    """Yield parts of `each` bytes, with a pause of `every` seconds after each."""
     for start in range(0, len(data), each):
         yield data[start : start + each]
         await passing(every)
 
 
-def test_a_slow_upload_delays_no_other(trace: bytes) -> None:
+def test_a_slow_upload_does_not_delay_other_uploads(trace: bytes) -> None:
     @in_virtual_time
     async def test() -> None:
         clock = asyncio.get_running_loop().time
@@ -91,7 +91,7 @@ def test_a_slow_upload_delays_no_other(trace: bytes) -> None:
     test()
 
 
-def test_more_than_a_few_uploads_at_once_are_refused(trace: bytes) -> None:
+def test_too_many_simultaneous_uploads_are_refused(trace: bytes) -> None:
     @in_virtual_time
     async def test() -> None:
         async with board() as app, client(app) as browser:
@@ -147,11 +147,11 @@ def test_a_recording_that_is_too_large_is_refused(trace: bytes, monkeypatch: pyt
 def test_the_largest_export_can_be_uploaded(trace: bytes) -> None:
     records = json.loads(trace)["records"]
     a_record = len(json.dumps(records)) / len(records)
-    assert 1.5 * a_record * 125_000 < application.LARGEST  # names and payloads are longer elsewhere
+    assert 1.5 * a_record * 125_000 < application.LARGEST  # other agents have longer names and payloads
 
 
 @in_virtual_time
-async def test_an_aborted_upload_delays_no_other() -> None:
+async def test_an_aborted_upload_does_not_delay_other_uploads() -> None:
     async with board() as app, client(app) as browser:
         scope = {
             "type": "http", "asgi": {"version": "3.0"}, "http_version": "1.1", "method": "POST", "scheme": "http",
@@ -171,7 +171,7 @@ async def test_an_aborted_upload_delays_no_other() -> None:
 
 
 @in_virtual_time
-async def test_a_site_that_may_embed_the_chat_may_not_connect_to_the_board_nor_show_it() -> None:
+async def test_a_site_that_may_embed_the_chat_may_neither_embed_nor_use_the_board() -> None:
     site = "https://museum.example"
     async with board(origins=(site,)) as app, client(app) as browser:
         async with Visit(app, origin=site) as visit:
@@ -187,7 +187,7 @@ async def test_a_site_that_may_embed_the_chat_may_not_connect_to_the_board_nor_s
             policy = (await browser.get(path)).headers["content-security-policy"]
             framing[path] = policy.rpartition("; ")[2]
         assert framing.pop("/") == f"frame-ancestors 'self' {site}"
-        assert framing.pop("/board") == f"frame-ancestors 'self' {site}"  # it redirects there
+        assert framing.pop("/board") == f"frame-ancestors 'self' {site}"  # only a redirect to /board/
         assert set(framing.values()) == {"frame-ancestors 'self'"}
 
 

@@ -1,4 +1,4 @@
-"""The description of a policy: utilities add up, and both ends of each relation agree."""
+"""The description of a policy: utilities add up, and signals, slots and rules refer to each other."""
 
 import math
 
@@ -11,7 +11,7 @@ from ravestate.board.description import describe
 from ravestate.modules import agenda, emotion, fillers, hibye, idle
 
 
-def test_the_terms_and_predicates_of_each_clause_make_up_its_utility() -> None:
+def test_the_terms_and_predicates_of_each_clause_add_up_to_its_utility() -> None:
     policy = rs.compile(gossip, parrot, idle, hibye, fillers, emotion, agenda)
     found = describe(policy)
     clauses = [clause for rule in found.rules for clause in rule.clauses]

@@ -1,4 +1,4 @@
-"""The index of a trace for one causal group."""
+"""`History`, an index of the records of one causal group in a trace."""
 
 import pytest
 
@@ -11,12 +11,12 @@ def born(spike: int, signal: str, group: int = 1, source: int = 0, time: float =
 
 
 def run(number: int, rule: str, spikes: tuple[int, ...], begin: float, end: float | None) -> list[Record]:
-    """Return the records of a run between two times (seconds); an end of None means that it still runs."""
+    """Return the records of a run from `begin` to `end` (seconds); without an end, it is still running."""
     ended = [] if end is None else [Settled(end, number, rule, "done", "", True)]
     return [Started(begin, number, rule, 0, spikes), *ended]
 
 
-def test_groups_that_merge_in_many_steps_are_one() -> None:
+def test_groups_that_merge_in_many_steps_become_one_group() -> None:
     merges = [Merged(1.0, group, group - 1) for group in range(2, 3000)]
     history = History([born(n, "m:s", group=n) for n in range(1, 3000)] + [*reversed(merges)], 2999)
     assert history.root(2999) == 1
@@ -32,7 +32,7 @@ def test_a_file_that_merges_groups_in_a_circle_can_still_be_read() -> None:
     ("time", "runs"),
     [(0.5, False), (1.0, True), (2.5, True), (5.0, True), (5.5, False), (7.0, True), (9.0, True)],
 )
-def test_a_rule_ran_at_a_time_between_its_start_and_its_end(time: float, runs: bool) -> None:
+def test_ran_is_true_between_the_start_and_the_end_of_a_run(time: float, runs: bool) -> None:
     records = [
         born(1, "m:s"),
         born(2, "m:s", group=2),
@@ -45,7 +45,7 @@ def test_a_rule_ran_at_a_time_between_its_start_and_its_end(time: float, runs: b
     assert not History(records, 1).ran("m:other", time)
 
 
-def test_the_rule_behind_a_run_raised_a_spike_of_this_group() -> None:
+def test_before_names_the_rule_that_raised_a_spike_of_the_run_in_this_group() -> None:
     records = [
         born(1, "m:boot", group=2),
         *run(1, "m:warm_up", (1,), 0.0, 0.0),
@@ -61,7 +61,7 @@ def test_the_rule_behind_a_run_raised_a_spike_of_this_group() -> None:
     assert [history.before(number) for number in (0, 99)] == ["", ""]  # unknown
 
 
-def test_the_first_answer_is_the_run_for_this_cause_that_ended_first() -> None:
+def test_answered_returns_the_run_that_was_the_first_to_end_for_this_cause() -> None:
     records = [
         born(1, "m:s"),
         born(2, "m:s", group=2),
@@ -81,14 +81,14 @@ def test_the_first_answer_is_the_run_for_this_cause_that_ended_first() -> None:
     assert history.answered({"m:other": [{"m:s"}]}) is None
 
 
-def test_the_value_of_a_slot_at_a_time_is_its_last_write_until_then() -> None:
+def test_value_returns_the_last_write_to_a_slot_up_to_a_time() -> None:
     history = History([born(1, "m:s"), *(Set(time, "m:x", time, 0) for time in (1.0, 2.0, 2.5))], 1)
     found = [history.value("m:x", time) for time in (0.5, 1.0, 2.2, 9.0)]
     assert [None if write is None else write.value for write in found] == [None, 1.0, 2.0, 2.5]
     assert history.value("m:y", 9.0) is None
 
 
-def test_spikes_lost_in_one_instant_were_not_lacking_before() -> None:
+def test_lacks_stays_unchanged_when_an_attempt_loses_all_its_spikes_at_once() -> None:
     held = [Held(0.0, 7, "m:r", 0, 1, "m:s", ("m:t", "m:u")), Held(1.0, 7, "m:r", 0, 2, "m:t", ("m:u",))]
     lost = [GaveUp(2.0, 7, "m:r", spike, signal, "age") for spike, signal in ((1, "m:s"), (2, "m:t"))]
     history = History([born(1, "m:s"), born(2, "m:t"), *held, *lost], 1)
@@ -96,7 +96,7 @@ def test_spikes_lost_in_one_instant_were_not_lacking_before() -> None:
     assert (attempt.lacks, attempt.end, attempt.over) == (("m:u",), 2.0, True)
 
 
-def test_a_run_whose_start_is_missing_has_ended() -> None:
+def test_a_run_with_an_end_record_but_no_start_record_has_ended() -> None:
     records = [born(1, "m:s"), Held(0.0, 7, "m:r", 0, 1, "m:s", ()), Settled(2.0, 7, "m:r", "done", "", True)]
     (attempt,) = History(records, 1).of("m:r")
     assert (attempt.over, attempt.end) == (True, 2.0)

@@ -1,4 +1,4 @@
-"""The idle share of a process. Time in which other programs keep the process waiting is not idle."""
+"""The share of time in which a process is idle. Waiting for a processor that other programs use is not idle time."""
 
 from pathlib import Path
 
@@ -9,11 +9,11 @@ from ravestate.board.recorder import IdleShare
 
 
 class Clocks:
-    """Three clocks (seconds) under the test's control."""
+    """The real time, computing time and waiting time of a process (seconds). The test sets them."""
 
     passed = computed = kept = 0.0
 
-    def on(self, passed: float, computed: float, kept: float = 0.0) -> None:
+    def advance(self, passed: float, computed: float, kept: float = 0.0) -> None:
         self.passed += passed
         self.computed += computed
         self.kept += kept
@@ -28,25 +28,25 @@ def clocks(monkeypatch: pytest.MonkeyPatch) -> Clocks:
     return clocks
 
 
-def test_the_share_is_the_idle_time_since_the_last_call(clocks: Clocks) -> None:
+def test_share_measures_the_idle_time_since_its_last_call(clocks: Clocks) -> None:
     spare = IdleShare()
-    clocks.on(2.0, computed=0.5)
+    clocks.advance(2.0, computed=0.5)
     assert spare.share() == 0.75
-    clocks.on(1.0, computed=1.0)
-    assert spare.share() == 0.0  # since the last call
+    clocks.advance(1.0, computed=1.0)
+    assert spare.share() == 0.0  # no idle time since the last call
 
 
 def test_time_spent_waiting_for_other_programs_is_not_idle(clocks: Clocks) -> None:
     spare = IdleShare()
-    clocks.on(3.0, computed=1.0, kept=2.0)
+    clocks.advance(3.0, computed=1.0, kept=2.0)
     assert spare.share() == 0.0
-    clocks.on(4.0, computed=1.0, kept=1.0)
+    clocks.advance(4.0, computed=1.0, kept=1.0)
     assert spare.share() == 0.5
 
 
 def test_several_busy_threads_leave_no_idle_time(clocks: Clocks) -> None:
     spare = IdleShare()
-    clocks.on(1.0, computed=1.8)
+    clocks.advance(1.0, computed=1.8)
     assert spare.share() == 0.0
     assert spare.share() == 0.0  # no time has passed
 
@@ -54,7 +54,7 @@ def test_several_busy_threads_leave_no_idle_time(clocks: Clocks) -> None:
 @pytest.mark.parametrize(
     ("told", "seconds"), [("5000000000 1500000000 7\n", 1.5), ("", 0.0), ("5 x 7", 0.0), (None, 0.0)]
 )
-def test_without_a_readable_measurement_no_time_counts_as_waiting(
+def test_without_a_readable_measurement_the_waiting_time_is_zero(
     monkeypatch: pytest.MonkeyPatch, tmp_path: Path, told: str | None, seconds: float
 ) -> None:
     file = tmp_path / "schedstat"

@@ -1,4 +1,4 @@
-"""Inspectors: their view, questions and commands, and the limits."""
+"""Inspectors: the records they get, their questions and commands, and their limits."""
 
 import json
 from typing import Any
@@ -45,7 +45,7 @@ async def test_the_chat_page_gets_the_address_of_the_board() -> None:
 
 
 @in_virtual_time
-async def test_without_a_name_an_inspector_gets_the_newest_conversation_or_begins_one() -> None:
+async def test_an_inspector_that_names_no_conversation_gets_the_newest_or_begins_one() -> None:
     async with board() as app:
         async with Look(app) as look:
             first = await look.begin()
@@ -62,7 +62,7 @@ async def test_without_a_name_an_inspector_gets_the_newest_conversation_or_begin
 
 
 @in_virtual_time
-async def test_the_list_has_the_start_and_last_words_of_conversations_and_comes_again_after_changes() -> None:
+async def test_the_list_shows_the_start_and_last_words_of_conversations_and_is_updated() -> None:
     async with board() as app, Visit(app) as visit, Look(app) as look:
         await visit.hello()
         await look.begin(session=visit.session)
@@ -75,7 +75,7 @@ async def test_the_list_has_the_start_and_last_words_of_conversations_and_comes_
     assert after == {**before, "said": "My name is Ada, and I live xxxxxxxxxxxxxxxxxxxxx"}
 
 
-def test_the_newest_conversations_and_the_one_in_view_are_listed(
+def test_the_list_has_the_newest_conversations_and_the_one_in_view(
     monkeypatch: pytest.MonkeyPatch,
 ) -> None:
     @in_virtual_time
@@ -97,7 +97,7 @@ def test_the_newest_conversations_and_the_one_in_view_are_listed(
 
 
 @in_virtual_time
-async def test_the_default_conversation_is_not_one_that_is_ending() -> None:
+async def test_an_ending_conversation_is_not_the_default_one() -> None:
     slow = rs.Module("slow", requires=(rawio, interloc))
 
     @slow.rule(when=interloc.users.removed, writes=rawio.output)
@@ -124,7 +124,7 @@ async def test_lone_surrogates_are_sent_unchanged() -> None:
 
 
 @in_virtual_time
-async def test_an_inspector_gets_the_records_of_its_own_conversation_only() -> None:
+async def test_an_inspector_gets_only_the_records_of_its_own_conversation() -> None:
     async with board() as app, Visit(app) as one, Visit(app) as other:
         await one.hello()
         await other.hello()
@@ -154,7 +154,7 @@ async def test_why_not_is_answered_with_the_right_reason() -> None:
 
 
 @in_virtual_time
-async def test_a_rule_is_explained_while_it_waits() -> None:
+async def test_a_waiting_rule_can_be_explained() -> None:
     async with board() as app, Look(app) as look:
         await look.begin()
         look.tell("say", text="Hello")
@@ -168,7 +168,7 @@ async def test_a_rule_is_explained_while_it_waits() -> None:
 
 
 async def step_until(look: Look, kind: str, **fields: Any) -> dict[str, Any]:
-    """Step until there is such a record."""
+    """Step until a record of a kind with these fields arrives."""
     for _ in range(20):
         found = look.found(kind, **fields)
         if found is not None:
@@ -177,11 +177,11 @@ async def step_until(look: Look, kind: str, **fields: Any) -> dict[str, Any]:
         await passing(1)
         look.tell("ping")
         await look.answer("pong")
-    raise AssertionError(f"20 steps have brought no {kind} {fields}")
+    raise AssertionError(f"no record of kind {kind} with {fields} after 20 steps")
 
 
 @in_virtual_time
-async def test_the_clock_is_paused_stepped_and_continued() -> None:
+async def test_the_clock_can_be_paused_stepped_and_resumed() -> None:
     async with board() as app, Look(app) as look:
         await look.begin()
         look.tell("pause")
@@ -193,7 +193,8 @@ async def test_the_clock_is_paused_stepped_and_continued() -> None:
         started = await step_until(look, "started", rule="gossip:classify")
         assert started["time"] < 1
         settled = await step_until(look, "settled", rule="gossip:classify")
-        assert settled["time"] == pytest.approx(started["time"] + 0.2)  # nothing was due, so the clock moved
+        # Nothing else was due, so a step advanced the clock.
+        assert settled["time"] == pytest.approx(started["time"] + 0.2)
         await passing(30)
         assert not look.found("settled", rule="gossip:talk")
         look.tell("resume")
@@ -219,7 +220,7 @@ async def test_a_step_that_does_nothing_says_why() -> None:
 
 
 @in_virtual_time
-async def test_slots_are_written_and_signals_raised_by_hand() -> None:
+async def test_the_board_can_write_slots_and_raise_signals() -> None:
     async with board() as app, Look(app) as look:
         await look.begin()
         look.tell("put", slot="gossip:secret", value={"of": ["Ada", 1]})
@@ -323,7 +324,7 @@ async def test_a_silent_client_is_dropped() -> None:
 
 
 @in_virtual_time
-async def test_the_board_asks_for_the_same_token_and_origin() -> None:
+async def test_the_board_requires_the_token_and_the_origin_of_the_chat_page() -> None:
     async with board(token="open sesame, please") as app:
         async with Look(app) as look:
             await look.begin()
@@ -337,7 +338,7 @@ async def test_the_board_asks_for_the_same_token_and_origin() -> None:
 
 
 @in_virtual_time
-async def test_a_browser_that_stops_reading_delays_nothing_and_misses_records() -> None:
+async def test_a_browser_that_stops_reading_misses_records_but_does_not_delay_the_agent() -> None:
     ticks = rs.Module("ticks", requires=(rawio,))
     tick = ticks.signal("tick")
 
@@ -352,7 +353,7 @@ async def test_a_browser_that_stops_reading_delays_nothing_and_misses_records() 
             for _ in range(250):
                 session.context.emit(tick)
             await passing(2)
-        assert session.context.now >= 400  # time went on
+        assert session.context.now >= 400  # the conversation continued
         look.reading.set()
         missed = 0
         frame: dict[str, Any] = {}
@@ -364,7 +365,7 @@ async def test_a_browser_that_stops_reading_delays_nothing_and_misses_records() 
 
 
 @in_virtual_time
-async def test_a_client_that_asks_without_reading_is_dropped() -> None:
+async def test_a_client_that_sends_requests_without_reading_the_replies_is_dropped() -> None:
     async with board() as app, Look(app) as look:
         await look.begin()
         look.reading.clear()
@@ -376,7 +377,7 @@ async def test_a_client_that_asks_without_reading_is_dropped() -> None:
 
 
 @in_virtual_time
-async def test_huge_and_strange_values_are_cut() -> None:
+async def test_huge_values_are_cut_and_strange_values_shown_as_text() -> None:
     class Odd:
         def __repr__(self) -> str:
             raise ValueError("no")
@@ -413,7 +414,7 @@ async def test_a_new_rule_is_announced() -> None:
 
 
 @in_virtual_time
-async def test_the_diagram_comes_laid_out_folded_or_not() -> None:
+async def test_an_inspector_gets_the_diagram_folded_or_partly_unfolded() -> None:
     async with board() as app, Look(app) as look:
         await look.begin()
         look.tell("diagram", unfolded=[])
@@ -426,13 +427,13 @@ async def test_the_diagram_comes_laid_out_folded_or_not() -> None:
 
 
 def names_told(frames: list[dict[str, Any]]) -> list[dict[str, Any]]:
-    """Return the records with the agent's name in some frames."""
+    """Return the records in some frames that write the agent's name."""
     records = [record for frame in frames for record in frame.get("records", ())]
     return [record for record in records if record.get("slot") == "interloc:agent"]
 
 
 @in_virtual_time
-async def test_the_agents_name_is_announced_and_a_fixed_title_stays() -> None:
+async def test_the_agents_new_name_becomes_the_title_unless_the_title_is_fixed() -> None:
     async with board(title=None) as app, Look(app) as look:
         assert (await look.begin())["title"] == "Ravestate"
         look.tell("put", slot="interloc:agent", value="Robin")
@@ -445,7 +446,7 @@ async def test_the_agents_name_is_announced_and_a_fixed_title_stays() -> None:
         told: list[dict[str, Any]] = []
         while not names_told(told):
             told += await look.frames("records")
-        look.tell("say", text="Hello")  # later frames, too
+        look.tell("say", text="Hello")  # look at the next frames as well
         told += await look.frames("records")
         assert "renamed" not in [frame["type"] for frame in told]
 
@@ -462,7 +463,7 @@ async def test_the_end_of_a_conversation_is_announced() -> None:
 
 
 @in_virtual_time
-async def test_an_open_board_keeps_its_conversation() -> None:
+async def test_an_open_board_keeps_its_conversation_alive() -> None:
     async with board(keep=5) as app:
         async with Look(app) as look:
             await look.begin()

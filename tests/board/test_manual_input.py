@@ -49,7 +49,7 @@ SLOTS = {slot.name: slot for slot in (text, perhaps, place, free, lamp, people)}
 
 
 def emit(signal: rs.Signal[Any], holds: object = None, **payload: Any) -> None:
-    """Raise a signal on the board."""
+    """Check a payload as the board does before it raises a signal."""
     slot = SLOTS.get(signal.name.rpartition(":")[0])
     check_payload(signal, Emit(type="emit", signal=signal.name, **payload), slot, holds)
 
@@ -72,7 +72,7 @@ def emit(signal: rs.Signal[Any], holds: object = None, **payload: Any) -> None:
         (lamp.true, {"payload": True}),
     ],
 )
-def test_a_fitting_payload_is_raised(signal: rs.Signal[Any], payload: dict[str, Any]) -> None:
+def test_a_fitting_payload_is_accepted(signal: rs.Signal[Any], payload: dict[str, Any]) -> None:
     emit(signal, **payload)
 
 
@@ -104,7 +104,7 @@ def test_a_wrong_payload_is_refused(signal: rs.Signal[Any], payload: dict[str, A
 
 
 @pytest.mark.parametrize("holds", [None, 7, float("inf"), "x", [1], {"a": {"b": [1, 2]}}, "x" * 10**6])
-def test_an_untyped_slot_takes_any_json_unless_its_value_is_beyond_json(holds: object) -> None:
+def test_an_untyped_slot_takes_any_json_only_while_it_holds_json(holds: object) -> None:
     check_value(free, "new", holds)
     for foreign in (Point(1), [Point(1)], {"a": Point(1)}, {1: 2}, (1, 2), [(1, 2)]):
         with pytest.raises(rs.RavestateError, match=rf"lab:free holds a {type(foreign).__name__}, which JSON"):
@@ -113,14 +113,14 @@ def test_an_untyped_slot_takes_any_json_unless_its_value_is_beyond_json(holds: o
             emit(free.changed, foreign, payload="new")
 
 
-def test_a_collection_is_written_whatever_its_items_are() -> None:
+def test_a_collection_can_be_written_whatever_items_it_holds() -> None:
     check_value(people, {"ada": 1}, {"ada": Point(1)})
 
 
 def test_a_value_of_a_type_that_json_cannot_express_is_refused() -> None:
     with pytest.raises(rs.RavestateError, match="lab:place takes Point, which JSON cannot express"):
         check_value(place, {"x": 1}, None)
-    check_value(place, None, Point(1))  # its default
+    check_value(place, None, Point(1))  # the default of the slot
 
 
 Strings = Annotated[list[str] | None, "of some kind"]
@@ -137,7 +137,7 @@ CONTAINERS: list[tuple[Any, Any, list[Any], list[Any]]] = [
 
 
 @pytest.mark.parametrize(("kind", "default", "taken", "refused"), CONTAINERS, ids=lambda one: str(one))
-def test_a_container_type_takes_only_such_containers(
+def test_a_container_type_takes_only_containers_of_that_type(
     kind: Any, default: Any, taken: list[Any], refused: list[Any]
 ) -> None:
     slot = rs.Module("boxes").slot("box", default, type=kind)
@@ -160,7 +160,7 @@ def test_containers_that_json_cannot_express_are_refused(kind: Any) -> None:
 
 
 @pytest.mark.parametrize("kind", [Any, Literal["a", "b"], list[int] | Literal["a"]])
-def test_a_type_that_cannot_be_checked_counts_as_no_type(kind: Any) -> None:
+def test_a_slot_whose_type_cannot_be_checked_counts_as_untyped(kind: Any) -> None:
     slot = rs.Module("boxes").slot("box", "a", type=kind)
     check_value(slot, "b", "a")
     with pytest.raises(rs.RavestateError, match="boxes:box holds a Point"):
@@ -175,7 +175,7 @@ def test_a_flag_takes_only_true_and_false(value: Any) -> None:
 
 
 async def refusals(look: Look) -> list[str]:
-    """Return the refusals of all commands so far."""
+    """Return the error messages for all commands so far."""
     look.tell("ping")
     found: list[str] = []
     while (frame := await look.next())["type"] != "pong":
@@ -186,7 +186,7 @@ async def refusals(look: Look) -> list[str]:
 
 
 @in_virtual_time
-async def test_a_slots_signal_cannot_be_raised_with_a_value_that_the_slot_refuses() -> None:
+async def test_the_board_cannot_raise_a_slots_signal_with_a_value_that_the_slot_refuses() -> None:
     async with board() as app, Look(app) as look:
         await look.begin()
         look.tell("emit", signal="rawio:input:changed", payload=7)
@@ -200,7 +200,7 @@ async def test_a_slots_signal_cannot_be_raised_with_a_value_that_the_slot_refuse
 
 
 @in_virtual_time
-async def test_the_page_of_a_visitor_cannot_be_removed() -> None:
+async def test_the_board_cannot_overwrite_the_page_of_a_visitor() -> None:
     async with board(parrot) as app, Visit(app) as visit:
         await visit.hello()
         await visit.messages(1)
@@ -215,13 +215,13 @@ async def test_the_page_of_a_visitor_cannot_be_removed() -> None:
 
 
 @in_virtual_time
-async def test_say_treats_texts_like_those_that_visitors_type() -> None:
+async def test_say_treats_a_text_as_if_the_visitor_had_typed_it() -> None:
     async with board() as app, Visit(app) as visit:
         await visit.hello()
         async with Look(app) as look:
             await look.begin(session=visit.session)
             look.tell("pause")
-            for _ in range(3):  # no record in between tells them apart
+            for _ in range(3):  # three equal texts, with no record between them
                 look.tell("say", text="\x1b[2JHello\x00")
             look.tell("say", text="x" * (LONGEST_TEXT + 1))
             look.tell("say", text=" \x00 ")
@@ -240,7 +240,7 @@ async def test_say_treats_texts_like_those_that_visitors_type() -> None:
 
 
 @in_virtual_time
-async def test_a_conversation_that_is_ending_takes_nothing_and_says_so() -> None:
+async def test_an_ending_conversation_refuses_all_input_with_a_message() -> None:
     slow = rs.Module("slow", requires=(rawio, interloc))
 
     @slow.rule(when=interloc.users.removed, writes=rawio.output)

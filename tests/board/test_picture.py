@@ -1,4 +1,4 @@
-"""The laid-out diagram: folded modules, and no lost or overlapping node."""
+"""The laid-out diagram: modules can be folded, and no node is lost or overlaps another."""
 
 import itertools
 
@@ -11,7 +11,7 @@ from ravestate.draw.fold import fold
 from ravestate.modules import hibye, idle
 
 
-def test_folding_leaves_one_node_for_each_module_and_no_edge_within_one() -> None:
+def test_folding_leaves_one_node_for_each_module_and_no_edge_within_a_module() -> None:
     whole = describe(rs.compile(gossip, parrot, idle, hibye)).diagram
     folded = fold(whole, ())
     modules = {node.module for node in whole.nodes if node.module}
@@ -26,10 +26,10 @@ def test_a_folded_module_says_how_many_rules_it_has() -> None:
     assert notes["module parrot"] == "3 rules"
     assert notes["module rawio"] == "no rules"
     junctions = [node for node in folded.nodes if node.kind in ("and", "or")]
-    assert not junctions  # folded modules keep no junction
+    assert not junctions  # folding removes the junctions of a module
 
 
-def test_the_layout_of_a_hundred_rules_has_every_node_in_a_place_of_its_own() -> None:
+def test_the_layout_of_120_rules_has_no_overlapping_nodes() -> None:
     module = rs.Module("large")
     heard, said = module.slot("heard", ""), module.slot("said", "")
     signals = [heard.changed]

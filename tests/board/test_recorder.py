@@ -27,7 +27,7 @@ def ticking() -> tuple[rs.Context, rs.Signal[None]]:
 
 
 @in_virtual_time
-async def test_records_are_numbered_and_read_once_by_each_inspector() -> None:
+async def test_records_are_numbered_and_each_inspector_reads_them_once() -> None:
     context, tick = ticking()
     recorder = Recorder(context, whole=True)
     async with context:
@@ -42,7 +42,7 @@ async def test_records_are_numbered_and_read_once_by_each_inspector() -> None:
 
 
 @in_virtual_time
-async def test_memory_is_bounded_and_the_oldest_goes_first() -> None:
+async def test_a_full_recorder_drops_its_oldest_records() -> None:
     context, tick = ticking()
     recorder = Recorder(context, kept=50)
     async with context:
@@ -55,7 +55,7 @@ async def test_memory_is_bounded_and_the_oldest_goes_first() -> None:
 
 
 @in_virtual_time
-async def test_beyond_its_rate_a_recorder_stops_listening_and_counts_the_missed_spikes() -> None:
+async def test_above_its_rate_a_recorder_stops_recording_and_counts_the_missed_spikes() -> None:
     context, tick = ticking()
     recorder = Recorder(context, burst=200, rate=100, spare=0)
     async with context:
@@ -65,7 +65,7 @@ async def test_beyond_its_rate_a_recorder_stops_listening_and_counts_the_missed_
             await passing(0.01)
         taken = recorder.last
         await passing(10)
-        context.emit(tick)  # its number shows how many were missed
+        context.emit(tick)  # the number of this spike shows how many were missed
         await passing(1)
         gaps = [record for record in recorder.records if isinstance(record, Gap)]
         born = [record.spike for record in recorder.records if isinstance(record, Born)]
@@ -73,7 +73,7 @@ async def test_beyond_its_rate_a_recorder_stops_listening_and_counts_the_missed_
     assert gaps
     assert all(gap.spikes >= 0 for gap in gaps)
     assert recorder.missed == sum(gap.spikes for gap in gaps) > 1000
-    assert len(born) + recorder.missed == born[-1]  # each spike was recorded or counted
+    assert len(born) + recorder.missed == born[-1]  # each spike was recorded or counted as missed
 
 
 @in_virtual_time
@@ -89,7 +89,7 @@ async def test_after_a_long_pause_another_burst_is_recorded_in_full() -> None:
 
 
 @in_virtual_time
-async def test_a_context_has_one_recorder() -> None:
+async def test_each_context_has_its_own_single_recorder() -> None:
     context, _ = ticking()
     other, _ = ticking()
     recorders = Recorders()
@@ -101,7 +101,7 @@ async def test_a_context_has_one_recorder() -> None:
 async def test_a_recorder_is_freed_with_its_context() -> None:
     recorders = Recorders()
     gone: list[weakref.ref[Any]] = []
-    for length in (5, 300):  # the second one is idle when its context ends
+    for length in (5, 300):  # the second recorder has stopped recording when its context ends
         context, tick = ticking()
         recorder = recorders.of(context)
         recorder._burst = 100  # pyright: ignore[reportPrivateUsage]
@@ -146,7 +146,7 @@ async def test_all_recorders_together_stay_within_the_shared_limit() -> None:
             await stack.enter_async_context(context)
         for number in range(60):
             for place, (context, tick) in enumerate(made):
-                if place < 15 or number < 2:  # the last five are short
+                if place < 15 or number < 2:  # the last five contexts have few records
                     context.emit(tick)
             await passing(1)
             assert sum(len(recorder.records) for recorder in kept) <= 3000 * 1.02 + 20 * BATCH
@@ -160,7 +160,7 @@ async def test_all_recorders_together_stay_within_the_shared_limit() -> None:
 
 
 @in_virtual_time
-async def test_missed_spikes_are_counted_right_even_if_no_earlier_spike_is_kept() -> None:
+async def test_missed_spikes_are_counted_correctly_even_if_no_earlier_spike_is_kept() -> None:
     context, tick = ticking()
     recorder = Recorder(context, rate=0, spare=0)
     async with context:
@@ -179,9 +179,9 @@ async def test_missed_spikes_are_counted_right_even_if_no_earlier_spike_is_kept(
 
 
 @in_virtual_time
-async def test_records_up_to_the_first_spike_after_a_gap_are_taken_once() -> None:
+async def test_no_spike_after_a_gap_is_recorded_twice() -> None:
     context, tick = ticking()
-    recorder = Recorder(context, burst=3, rate=0, spare=0)  # a record at a time
+    recorder = Recorder(context, burst=3, rate=0, spare=0)  # only a few records between two gaps
     async with context:
         for _ in range(30):
             for _ in range(3):
@@ -202,7 +202,7 @@ async def test_shortening_during_a_gap_adds_no_missed_spikes() -> None:
         await passing(0.01)
         assert isinstance(recorder.records[-1], Gap)
         before = max(record.spike for record in recorder.records if isinstance(record, Born))
-        recorder.shorten(20)  # another conversation needs the memory
+        recorder.shorten(20)  # as if another conversation needed the memory
         await passing(1)
         context.emit(tick)
         await passing(1)
@@ -211,7 +211,7 @@ async def test_shortening_during_a_gap_adds_no_missed_spikes() -> None:
 
 
 @in_virtual_time
-async def test_a_spike_that_was_dropped_for_lack_of_room_does_not_count_as_missed() -> None:
+async def test_a_recorded_spike_that_was_dropped_later_does_not_count_as_missed() -> None:
     context, tick = ticking()
     recorder = Recorder(context, kept=5, rate=0, spare=0)
     async with context:
@@ -245,12 +245,12 @@ async def test_a_gap_counts_as_a_record() -> None:
     ("lengths", "in_all", "fair"),
     [([], 10, 1), ([5, 3], 10, 5), ([5, 3], 6, 3), ([1, 9, 9], 11, 5), ([4] * 100, 50, 1), ([7], 3, 3)],
 )
-def test_the_longest_recorders_are_shortened_to_one_length(lengths: list[int], in_all: int, fair: int) -> None:
+def test_the_longest_recorders_are_shortened_to_the_same_length(lengths: list[int], in_all: int, fair: int) -> None:
     assert _fair(lengths, in_all) == fair
 
 
 @given(st.lists(st.integers(0, 1000), min_size=1), st.integers(0, 5000))
-def test_the_kept_records_nearly_fill_the_limit(lengths: list[int], spare: int) -> None:
+def test_the_records_that_remain_nearly_fill_the_shared_limit(lengths: list[int], spare: int) -> None:
     in_all = len(lengths) + spare
     kept = sum(min(length, _fair(lengths, in_all)) for length in lengths)
     assert min(sum(lengths), in_all - len(lengths)) <= kept <= in_all

@@ -1,4 +1,4 @@
-"""Values as text: whole if possible, otherwise cut, and never an error."""
+"""Rendering values as text: the whole value if possible, otherwise a cut one; rendering never fails."""
 
 import json
 
@@ -17,7 +17,7 @@ JSON = st.recursive(
 
 
 @given(JSON, st.integers(1, 60))
-def test_text_is_bounded_and_whole_json_can_be_read_back(value: object, most: int) -> None:
+def test_a_text_has_a_maximum_length_and_uncut_json_can_be_parsed(value: object, most: int) -> None:
     shown = render(value, most)
     assert len(shown.text) <= max(most, 40)
     shown.text.encode()
@@ -54,7 +54,7 @@ def endless() -> list[object]:
         ("hello", Rendered('"hello"')),
         (True, Rendered("true")),
         (None, Rendered("null")),
-        ((1, 2), Rendered("(1, 2)", json=False)),  # JSON would make it a list
+        ((1, 2), Rendered("(1, 2)", json=False)),  # JSON would turn the tuple into a list
         ({1: 2}, Rendered("{1: 2}", json=False)),
         (float("inf"), Rendered("inf", json=False)),
         ({1, 2}, Rendered("{1, 2}", json=False)),
@@ -67,7 +67,7 @@ def test_each_value_has_a_readable_text(value: object, shown: Rendered) -> None:
     assert render(value) == shown
 
 
-def test_an_endless_value_has_a_text() -> None:
+def test_a_list_that_contains_itself_has_a_text() -> None:
     assert render(endless()).text == "[[...]]"
 
 
@@ -79,7 +79,7 @@ class Counted:
         return "counted"
 
 
-def test_a_huge_value_is_rendered_only_as_far_as_its_text_goes() -> None:
+def test_only_the_items_that_fit_into_the_text_are_rendered() -> None:
     for value in (
         {Counted() for _ in range(1000)},
         {n: Counted() for n in range(1000)},

@@ -1,4 +1,4 @@
-"""A repr in chunks: the same text as Python's own, made only as far as it is read."""
+"""A repr in chunks: the same text as Python's `repr`, but chunks that nobody reads are never made."""
 
 import dataclasses
 from collections import Counter, OrderedDict, defaultdict, deque
@@ -76,7 +76,7 @@ VALUES = st.recursive(
 
 
 @given(VALUES)
-def test_the_chunks_make_pythons_repr(value: object) -> None:
+def test_the_joined_chunks_equal_pythons_repr(value: object) -> None:
     assert "".join(repr_chunks(value)) == repr(value)
 
 
@@ -111,7 +111,7 @@ def test_containers_have_the_same_text_as_in_python(value: object, text: str) ->
         (Counter("abb"), "Counter({'a': 1, 'b': 2})"),
     ],
 )
-def test_other_containers_show_their_name_and_their_items_in_order(value: object, text: str) -> None:
+def test_containers_with_options_show_only_their_name_and_their_items_in_order(value: object, text: str) -> None:
     assert "".join(repr_chunks(value)) == text
 
 
@@ -145,24 +145,24 @@ class Further(Point):
 
 
 @pytest.mark.parametrize("value", [Sly([1, 2]), SlyText("x"), SlyDict({1: 2}), Bytes(b"x"), Further(1, 2, 3)], ids=repr)
-def test_a_subclass_of_a_container_shows_its_items(value: object) -> None:
+def test_a_subclass_with_odd_methods_has_the_same_text_as_in_python(value: object) -> None:
     assert "".join(repr_chunks([value])) == repr([value])
 
 
-def test_a_value_within_itself_is_left_out_as_python_does() -> None:
+def test_a_value_that_contains_itself_has_the_same_text_as_in_python() -> None:
     inner: list[Any] = []
     for value in ((1, inner), {1: inner}):
         inner[:] = [value]
         assert "".join(repr_chunks(value)) == repr(value)
 
 
-def test_a_value_within_itself_appears_once() -> None:
+def test_a_list_that_contains_itself_shows_an_ellipsis_inside() -> None:
     loop: list[Any] = [1]
     loop += [loop, {2: loop}]
     assert "".join(repr_chunks(loop)) == repr(loop) == "[1, [...], {2: [...]}]"
 
 
-def test_deep_values_are_left_out() -> None:
+def test_values_nested_too_deeply_are_left_out() -> None:
     deep: list[Any] = []
     for _ in range(100_000):
         deep = [deep]
@@ -174,12 +174,12 @@ class Loud:
         raise RuntimeError("no")
 
 
-def test_a_failing_repr_is_named_in_its_place() -> None:
+def test_a_value_whose_repr_fails_is_replaced_by_the_name_of_the_error() -> None:
     assert "".join(repr_chunks([1, Loud()])) == "[1, <Loud whose repr fails: RuntimeError>]"
 
 
 class Watched:
-    """A value that counts calls of its repr."""
+    """A value that counts the calls of its `__repr__`."""
 
     asked = 0
 
@@ -201,7 +201,7 @@ def things() -> Iterator[Watched]:
     ],
     ids=lambda value: type(value).__name__,
 )  # fmt: skip
-def test_no_more_chunks_are_made_than_are_read(value: object) -> None:
+def test_no_item_is_rendered_before_its_chunk_is_read(value: object) -> None:
     Watched.asked = 0
     list(islice(repr_chunks(value), 20))
     assert 0 < Watched.asked <= 20

@@ -1,4 +1,4 @@
-"""Commands to a conversation, and callers that have gone."""
+"""Calls outside of any task, as the board makes them, and callers that are cancelled meanwhile."""
 
 import asyncio
 import contextlib
@@ -22,9 +22,9 @@ async def test_a_call_outside_of_any_task_returns_its_result() -> None:
         await _outside_of_any_task(fail)
 
 
-@pytest.mark.parametrize("work", [int, fail], ids=["done", "failed"])
-@pytest.mark.parametrize("by_itself", [False, True], ids=["before", "by it"])
-def test_a_call_may_end_after_its_caller_was_cancelled(work: Callable[[], object], by_itself: bool) -> None:
+@pytest.mark.parametrize("work", [int, fail], ids=["call succeeds", "call fails"])
+@pytest.mark.parametrize("by_the_call", [False, True], ids=["cancelled before the call", "cancelled by the call"])
+def test_a_call_whose_caller_was_cancelled_still_ends_quietly(work: Callable[[], object], by_the_call: bool) -> None:
     @in_virtual_time
     async def test() -> None:
         said: list[Any] = []
@@ -33,12 +33,12 @@ def test_a_call_may_end_after_its_caller_was_cancelled(work: Callable[[], object
 
         def call() -> object:
             called.append(True)
-            if by_itself:
+            if by_the_call:
                 asking.cancel()
             return work()
 
         asking = asyncio.create_task(_outside_of_any_task(call))
-        if not by_itself:  # between the question and the answer
+        if not by_the_call:  # after the caller has asked for the call, and before the call
             asyncio.get_running_loop().call_soon(asking.cancel)
         await passing(1)
         with contextlib.suppress(asyncio.CancelledError):

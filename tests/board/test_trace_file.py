@@ -1,4 +1,4 @@
-"""Recorded traces are read back as they were written, and errors name the place of the fault."""
+"""Trace files: reading one gives what was written, and an error message says where a file is wrong."""
 
 import dataclasses
 import json
@@ -31,7 +31,7 @@ def recorded(path: Path) -> tuple[list[Record], rs.Policy]:
     return records, policy
 
 
-def test_records_and_policy_come_back_as_they_were(tmp_path: Path) -> None:
+def test_reading_a_trace_file_gives_the_records_and_policy_that_were_written(tmp_path: Path) -> None:
     records, policy = recorded(tmp_path / "trace.json")
     found = open_trace(tmp_path / "trace.json")
     assert (found.title, found.whole) == ("Elske", True)
@@ -39,7 +39,7 @@ def test_records_and_policy_come_back_as_they_were(tmp_path: Path) -> None:
     assert [data_of(record) for record in found.records] == [data_of(record) for record in records]
 
 
-def test_why_not_is_answered_without_the_agent(tmp_path: Path) -> None:
+def test_a_trace_file_alone_is_enough_to_answer_why_not(tmp_path: Path) -> None:
     recorded(tmp_path / "trace.json")
     found = open_trace(tmp_path / "trace.json")
     kept = [record for record in found.records if not isinstance(record, Gap)]
@@ -47,7 +47,7 @@ def test_why_not_is_answered_without_the_agent(tmp_path: Path) -> None:
     assert why_not(kept, found.description, "gossip:answer", spike).verdict == "untouched"
 
 
-def test_a_recording_is_shown_without_an_agent_and_refuses_commands(tmp_path: Path) -> None:
+def test_the_board_shows_a_recording_without_an_agent_and_refuses_commands(tmp_path: Path) -> None:
     records, _ = recorded(tmp_path / "trace.json")
     look_at(tmp_path, len(records))
 
@@ -141,7 +141,7 @@ def test_a_trace_may_begin_with_a_byte_order_mark(tmp_path: Path) -> None:
         read_trace(b'{"format": "\xff"}')
 
 
-def test_a_missing_file_is_named(tmp_path: Path) -> None:
+def test_the_message_for_a_missing_or_broken_file_has_its_name(tmp_path: Path) -> None:
     with pytest.raises(PlatformError, match=r"cannot read .*gone\.json: No such file"):
         open_trace(tmp_path / "gone.json")
     (tmp_path / "bad.json").write_text("no", "utf-8")
@@ -149,26 +149,26 @@ def test_a_missing_file_is_named(tmp_path: Path) -> None:
         open_trace(tmp_path / "bad.json")
 
 
-def test_a_gap_survives_the_round_trip() -> None:
+def test_a_gap_is_read_back_as_it_was_written() -> None:
     assert checked_record(data_of(Gap(1.5, 7))) == Gap(1.5, 7)
 
 
-def test_a_description_is_plain_data() -> None:
+def test_the_description_of_a_policy_can_be_written_as_json() -> None:
     with simulate(gossip, parrot) as sim:
         json.dumps(dataclasses.asdict(describe(sim.context.policy)))
 
 
-def test_a_recording_is_read_in_a_process_of_its_own(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+def test_a_recording_is_parsed_in_a_separate_process(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     recorded(tmp_path / "trace.json")
     data = (tmp_path / "trace.json").read_bytes()
     whole = read_trace(data)
-    monkeypatch.setattr(json, "loads", None)  # this process parses nothing
+    monkeypatch.setattr(json, "loads", None)  # parsing in this process would fail
     assert read_apart(data) == whole
     with pytest.raises(ValueError, match="it is not JSON"):
         read_apart(b"{")
 
 
-def test_a_failure_keeps_its_traceback_in_a_recording() -> None:
+def test_the_record_of_a_failure_keeps_its_traceback() -> None:
     try:
         raise ValueError("out of ink")
     except ValueError as error:

@@ -1,4 +1,4 @@
-"""Why a rule did not fire: the right reason in each case."""
+"""Why a rule did not fire: `why_not` gives the right reason in each case."""
 
 import asyncio
 import math
@@ -23,7 +23,7 @@ from ravestate.testing import Simulation, simulate
 
 
 class Stage:
-    """Two inputs, an output, and the usual rules."""
+    """A module with two inputs and an output. Each test adds rules."""
 
     def __init__(self) -> None:
         self.module = rs.Module("demo")
@@ -47,12 +47,12 @@ def spike_of(sim: Simulation, signal: str, number: int = 0) -> int:
 def ask(sim: Simulation, rule: str, signal: str = "demo:input:changed", number: int = 0) -> WhyNot:
     policy = sim.context.policy
     found = why_not(sim.trace, describe(policy), f"demo:{rule}", spike_of(sim, signal, number), gates_of(policy))
-    assert str(found)  # there is always a text
+    assert str(found)  # every explanation has a text
     return found
 
 
 def conversation(stage: Stage, is_question: bool, resigns: bool = False, slow: float = 0.0) -> None:
-    """A classifier, an answer to questions, and small talk for the rest."""
+    """Declare a classifier, a rule that answers questions, and small talk for all other inputs."""
     question = stage.module.signal("question")
 
     @stage.module.rule(when=stage.input.changed, emits=question)
@@ -74,7 +74,7 @@ def conversation(stage: Stage, is_question: bool, resigns: bool = False, slow: f
         ctx[stage.output] = "small talk"
 
 
-def test_a_rule_did_fire(stage: Stage) -> None:
+def test_a_rule_that_fired_is_reported_as_fired(stage: Stage) -> None:
     conversation(stage, is_question=True)
     with stage.run() as sim:
         sim.put(stage.input, "?")
@@ -86,7 +86,7 @@ def test_a_rule_did_fire(stage: Stage) -> None:
     ]  # fmt: skip
 
 
-def test_a_rule_was_ready_and_a_better_rule_answered(stage: Stage) -> None:
+def test_a_rule_was_ready_but_a_better_rule_answered(stage: Stage) -> None:
     conversation(stage, is_question=True, slow=2.0)
     with stage.run() as sim:
         sim.put(stage.input, "?")
@@ -102,7 +102,7 @@ def test_a_rule_was_ready_and_a_better_rule_answered(stage: Stage) -> None:
     assert ("demo:qa",) in [moment.rules for moment in found.moments]
 
 
-def test_a_rule_lacked_a_signal_that_its_cause_did_not_raise(stage: Stage) -> None:
+def test_a_rule_lacked_a_signal_that_no_rule_raised_for_its_cause(stage: Stage) -> None:
     conversation(stage, is_question=False)
     with stage.run() as sim:
         sim.put(stage.input, "hello")
@@ -178,7 +178,7 @@ def test_a_rule_never_took_the_spike_because_the_payload_did_not_fit(stage: Stag
     assert found.words == "it did not take demo:input:changed: its payload did not match the predicate"
 
 
-def test_a_rule_never_took_the_spike_because_its_cause_was_answered(stage: Stage) -> None:
+def test_a_rule_never_took_the_spike_because_another_rule_had_answered_its_cause(stage: Stage) -> None:
     later = stage.module.signal("later")
 
     @stage.module.rule(when=stage.input.changed, writes=stage.output)
@@ -199,8 +199,8 @@ def test_a_rule_never_took_the_spike_because_its_cause_was_answered(stage: Stage
     assert "demo:quick" in found.words
 
 
-@pytest.mark.parametrize("told", [True, False], ids=["as it is told", "as far as an older trace tells"])
-def test_a_detached_rule_has_not_answered_the_cause(stage: Stage, told: bool) -> None:
+@pytest.mark.parametrize("named", [True, False], ids=["new trace", "older trace"])
+def test_a_detached_rule_does_not_count_as_the_answer_to_the_cause(stage: Stage, named: bool) -> None:
     later = stage.module.signal("later")
 
     @stage.module.rule(when=stage.input.changed.detached(), writes=stage.output)
@@ -228,7 +228,7 @@ def test_a_detached_rule_has_not_answered_the_cause(stage: Stage, told: bool) ->
         assert [(p.reason, p.by, p.run) for p in passed] == [("consumed", "demo:answer", run)]
         kept = [data_of(record) for record in sim.trace]
         for record in kept:
-            if record["kind"] == "passed" and not told:
+            if record["kind"] == "passed" and not named:
                 del record["by"], record["run"]  # as in older files
         records = [record for record in map(checked_record, kept) if not isinstance(record, Gap)]
         spike = spike_of(sim, "demo:input:changed")
@@ -237,7 +237,7 @@ def test_a_detached_rule_has_not_answered_the_cause(stage: Stage, told: bool) ->
     assert found.words == "it did not take demo:later: demo:answer had already answered this cause"
 
 
-def test_for_causes_that_merge_later_the_answering_rule_is_named(stage: Stage) -> None:
+def test_the_answering_rule_is_right_even_if_causes_merge_later(stage: Stage) -> None:
     other, late = stage.module.slot("other", ""), stage.module.signal("late")
 
     @stage.module.rule(when=stage.touch, writes=stage.output)
@@ -301,7 +301,7 @@ def test_a_rule_lacked_an_input_until_its_spike_was_too_old(stage: Stage) -> Non
     assert found.missing[0].words == "demo:touch is an input and did not arrive"
 
 
-def test_a_missing_input_that_rules_may_raise_is_named_as_both(stage: Stage) -> None:
+def test_the_explanation_of_a_missing_input_names_the_rules_that_may_raise_it(stage: Stage) -> None:
     rung = stage.module.signal("rung", input=True)
 
     @stage.module.rule(when=stage.touch, emits=rung)
@@ -389,7 +389,7 @@ def test_the_spike_of_a_rule_was_too_young(stage: Stage) -> None:
     assert "demo:input:changed must be 3 s old, so the rule could not run before 3.000 s" in found.words
 
 
-def test_the_answering_rule_is_named_with_the_source_of_its_input(stage: Stage) -> None:
+def test_the_answering_rule_is_named_together_with_the_rule_before_it(stage: Stage) -> None:
     conversation(stage, is_question=True, slow=2.0)
     with stage.run() as sim:
         sim.put(stage.input, "?")
@@ -477,7 +477,7 @@ def test_the_first_declared_of_equal_rules_answers(stage: Stage) -> None:
     assert "demo:first" in found.words
 
 
-def test_the_question_may_be_about_a_later_input(stage: Stage) -> None:
+def test_why_not_can_be_asked_about_a_later_input(stage: Stage) -> None:
     conversation(stage, is_question=False)
     with stage.run() as sim:
         sim.put(stage.input, "one")
@@ -512,7 +512,7 @@ def test_a_signal_that_only_another_cause_raised_is_reported_as_such(stage: Stag
     )
 
 
-def test_causes_are_followed_back_and_circles_end(stage: Stage) -> None:
+def test_missing_signals_are_explained_backwards_even_if_rules_form_a_circle(stage: Stage) -> None:
     one, two = stage.module.signal("one", input=True), stage.module.signal("two")
 
     @stage.module.rule(when=stage.touch & two, emits=one)
@@ -556,7 +556,7 @@ def test_an_unknown_rule_or_spike_is_refused(stage: Stage) -> None:
             why_not(sim.trace, view, "demo:tlak", 1)
 
 
-def test_a_trace_that_begins_later_says_so(stage: Stage) -> None:
+def test_an_explanation_from_an_incomplete_trace_says_that_it_is_incomplete(stage: Stage) -> None:
     conversation(stage, is_question=False)
     with stage.run() as sim:
         sim.put(stage.input, "x")
@@ -567,7 +567,7 @@ def test_a_trace_that_begins_later_says_so(stage: Stage) -> None:
 
 
 def shut_while_waiting(stage: Stage) -> rs.Slot[bool]:
-    """Declare a rule with a slot predicate that waits for a better rule, which lacks a signal."""
+    """Declare two rules and return the slot of a predicate. The rule with the predicate waits for a better rule."""
     lit = stage.module.slot("lit", True)
 
     @stage.module.rule(when=stage.input.changed & lit.holds(bool), writes=stage.output)
@@ -580,7 +580,7 @@ def shut_while_waiting(stage: Stage) -> rs.Slot[bool]:
     return lit
 
 
-def test_a_predicate_that_became_false_during_a_wait_is_no_answer_by_another_rule(stage: Stage) -> None:
+def test_a_rule_whose_predicate_became_false_during_a_wait_is_reported_as_gated(stage: Stage) -> None:
     lit = shut_while_waiting(stage)
     with stage.run() as sim:
         sim.put(stage.input, "x")
@@ -601,7 +601,7 @@ def test_a_predicate_that_became_false_during_a_wait_is_no_answer_by_another_rul
     assert found.words.endswith(
         "nats ahead); then demo:lit.holds(bool) was false; demo:input:changed reached its maximum age of 5 s at 5.000 s"
     )
-    assert unseen.verdict == "gated"  # a recording has no predicates to evaluate
+    assert unseen.verdict == "gated"  # without functions for the predicates, as in a recording
 
 
 def test_a_waiting_rule_that_lost_while_its_predicate_was_false_is_reported_as_gated(stage: Stage) -> None:
@@ -632,7 +632,7 @@ def test_a_wait_with_a_true_predicate_names_the_rivals(stage: Stage) -> None:
         assert ask(sim, "gated").verdict == "outrun"
 
 
-def test_a_rule_of_another_cause_has_no_part_in_the_answer(stage: Stage) -> None:
+def test_the_explanation_does_not_name_a_rule_that_ran_for_another_cause(stage: Stage) -> None:
     boot, ready = stage.module.signal("boot"), stage.module.signal("ready")
 
     @stage.module.rule(when=boot, emits=ready)
@@ -657,7 +657,7 @@ def test_a_rule_of_another_cause_has_no_part_in_the_answer(stage: Stage) -> None
 
 
 def two_runs(stage: Stage) -> None:
-    """Declare a rule that hears two others. Its run for the second one's signal starts first, and resigns."""
+    """Declare a rule that reacts to the signals of two other rules. The first of its two runs resigns."""
     soon, late = stage.module.signal("soon"), stage.module.signal("late")
     asked: list[float] = []
 
@@ -681,7 +681,7 @@ def two_runs(stage: Stage) -> None:
     async def talk(ctx: rs.RuleContext) -> None: ...
 
 
-def test_the_run_that_answered_is_named_not_the_one_that_resigned(stage: Stage) -> None:
+def test_the_explanation_names_the_run_that_answered_and_not_the_one_that_resigned(stage: Stage) -> None:
     two_runs(stage)
     with stage.run() as sim:
         sim.put(stage.input, "x")
@@ -694,7 +694,7 @@ def test_the_run_that_answered_is_named_not_the_one_that_resigned(stage: Stage) 
     assert "demo:second" not in str(found)
 
 
-def test_a_trace_without_runs_names_the_rule_alone(stage: Stage) -> None:
+def test_from_an_older_trace_without_run_numbers_only_the_rule_is_named(stage: Stage) -> None:
     two_runs(stage)
     with stage.run() as sim:
         sim.put(stage.input, "x")
@@ -710,7 +710,7 @@ def test_a_trace_without_runs_names_the_rule_alone(stage: Stage) -> None:
 
 
 def many(stage: Stage, ticks: int, slow: float) -> Simulation:
-    """Declare rules for one cause: one rule answers many times, and another rule loses as often."""
+    """Declare two rules that compete for the many spikes of one cause. One rule wins, and the other loses each time."""
     tick = stage.module.signal("tick")
 
     @stage.module.rule(when=stage.touch, emits=tick)
@@ -731,7 +731,7 @@ def many(stage: Stage, ticks: int, slow: float) -> Simulation:
 
 
 def steps(work: Callable[[], object]) -> int:
-    """Count the lines of Python that some work runs."""
+    """Count the lines of Python that a function executes."""
     count = 0
 
     def watch(frame: FrameType, event: str, arg: object) -> Any:
@@ -748,8 +748,8 @@ def steps(work: Callable[[], object]) -> int:
     return count
 
 
-@pytest.mark.parametrize("slow", [0.0, 1.0], ids=["outrun", "kept waiting"])
-def test_the_cost_grows_as_the_history_does(slow: float) -> None:
+@pytest.mark.parametrize("slow", [0.0, 1.0], ids=["loses at once", "waits first"])
+def test_the_work_grows_only_in_proportion_to_the_history(slow: float) -> None:
     def cost(ticks: int) -> int:
         stage = Stage()
         with many(stage, ticks, slow) as sim:
@@ -763,7 +763,7 @@ def test_the_cost_grows_as_the_history_does(slow: float) -> None:
     assert cost(200) < 2.3 * cost(100)
 
 
-def test_of_very_many_moments_those_in_the_middle_are_left_out(stage: Stage) -> None:
+def test_a_very_long_explanation_leaves_out_the_moments_in_the_middle(stage: Stage) -> None:
     with many(stage, 300, 1.0) as sim:
         sim.emit(stage.touch)
         sim.advance(3)
@@ -776,7 +776,7 @@ def test_of_very_many_moments_those_in_the_middle_are_left_out(stage: Stage) -> 
     assert [moment.time for moment in found.moments] == sorted(moment.time for moment in found.moments)
 
 
-def test_a_run_with_a_missing_start_is_reported(stage: Stage) -> None:
+def test_a_run_with_an_end_but_no_start_is_reported_as_fired(stage: Stage) -> None:
     conversation(stage, is_question=False)
     with stage.run() as sim:
         sim.put(stage.input, "x")
@@ -786,8 +786,8 @@ def test_a_run_with_a_missing_start_is_reported(stage: Stage) -> None:
     assert found.verdict == "fired"
 
 
-def test_the_page_takes_its_reasons_from_the_enumerations() -> None:
-    """No source of the page repeats a phrase of `ravestate.engine.reasons`; only its generated protocol has them."""
+def test_the_sources_of_the_page_repeat_no_phrase_of_the_enumerations() -> None:
+    """The phrases of `ravestate.engine.reasons` reach the page only through its generated file, ``protocol.ts``."""
     phrases = [reason.words for kind in (LossReason, PassReason, Verdict) for reason in kind]
     for file in (Path(__file__).parents[2] / "frontend/src/board").glob("*.*"):
         if file.name != "protocol.ts":

@@ -1,7 +1,7 @@
-"""Run tests in an environment of their own, and show their results test by test.
+"""Run tests in a separate environment, and report the result of each test function.
 
-Pipecat and LiveKit do not share the environment of the other tests. `make test` makes theirs, `.venvs/NAME`. Their tests
-are in `cases/NAME_cases.py`, which pytest does not collect here.
+Pipecat and LiveKit each need their own environment, `.venvs/NAME`, which `make test` creates. Their tests are in
+`cases/NAME_cases.py`. The pytest of the main environment does not collect these files.
 """
 
 import ast
@@ -16,7 +16,7 @@ ROOT = Path(__file__).parents[2]
 CASES = Path(__file__).with_name("cases")
 
 Failures = dict[str, list[str]]
-"""Name of a test function → a message for each of its runs. The message is empty if the run passed."""
+"""Key: the name of a test function; value: a message for each of its runs, empty if the run passed."""
 
 
 def names_in(name: str) -> list[str]:
@@ -27,10 +27,10 @@ def names_in(name: str) -> list[str]:
 
 
 def run_apart(name: str, folder: Path) -> Failures:
-    """Run a file of cases in the environment `name`; `folder` is for the report."""
+    """Run `cases/NAME_cases.py` in the environment of that name. Write the report to `folder`."""
     python = ROOT / ".venvs" / name / "bin" / "python"
     if not python.exists():
-        pytest.fail(f"there is no {python.relative_to(ROOT)}: `make test` makes it", pytrace=False)
+        pytest.fail(f"there is no {python.relative_to(ROOT)}: `make test` creates it", pytrace=False)
     report = folder / "report.xml"
     environment = {key: value for key, value in os.environ.items() if not key.startswith("PYTEST")}
     environment["PYTHONPATH"] = os.pathsep.join(map(str, (ROOT / "src", CASES)))

@@ -1,4 +1,4 @@
-"""The tests of `ravestate.bridges.livekit`, which run in LiveKit's environment: see `cases/livekit_cases.py`."""
+"""`ravestate.bridges.livekit`: report the results of `cases/livekit_cases.py`, which runs in LiveKit's environment."""
 
 import pytest
 

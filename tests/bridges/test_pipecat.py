@@ -1,4 +1,4 @@
-"""The tests of `ravestate.bridges.pipecat`, which run in Pipecat's environment: see `cases/pipecat_cases.py`."""
+"""`ravestate.bridges.pipecat`: report the results of `cases/pipecat_cases.py`, which runs in Pipecat's environment."""
 
 import pytest
 

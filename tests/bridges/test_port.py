@@ -1,4 +1,4 @@
-"""The port of the bridges, in virtual time."""
+"""The part that all bridges share (``bridges/port.py``), in virtual time."""
 
 import asyncio
 from collections.abc import Awaitable, Callable
@@ -39,7 +39,7 @@ stubborn = rs.Module("stubborn", requires=[rawio])
 
 @stubborn.rule(when=rawio.input.changed, writes=rawio.output, emits=rawio.piece)
 async def insist(ctx: rs.RuleContext) -> None:
-    """Say the same as `talk`, but without an `until`."""
+    """Say the same as `talk`, but as a rule that new input does not interrupt."""
     ctx.emit(rawio.piece, "one ")
     await ctx.sleep(1)
     ctx.emit(rawio.piece, "two")
@@ -50,7 +50,7 @@ Talk = Callable[[Conversation, list[Utterance]], Awaitable[None]]
 
 
 def converse(talk: Talk, *modules: rs.Module) -> None:
-    """Run a test in virtual time with a conversation, and with a list of the agent's unasked utterances."""
+    """Run a test in virtual time. It gets a conversation, and a list of the utterances outside of `answer`."""
 
     async def main() -> None:
         spoken: list[Utterance] = []
@@ -66,14 +66,14 @@ def converse(talk: Talk, *modules: rs.Module) -> None:
 
 
 async def past(seconds: float) -> None:
-    """Let virtual time pass."""
+    """Wait for some seconds of virtual time."""
     over = asyncio.get_running_loop().create_future()
     asyncio.get_running_loop().call_later(seconds, over.set_result, None)
     await over
 
 
 async def text(utterance: Utterance) -> str:
-    """Return the pieces of an utterance once it is over."""
+    """Wait for the end of an utterance; return its pieces, joined by "|"."""
     return "|".join([piece async for piece in utterance])
 
 
@@ -84,7 +84,7 @@ async def answer(conversation: Conversation, words: str) -> list[str]:
 # ------------------------------------------------------------------------------------------- utterances
 
 
-def test_an_utterance_yields_its_pieces_and_ends_for_good() -> None:
+def test_an_utterance_yields_its_pieces_and_no_piece_after_its_end() -> None:
     async def main() -> None:
         utterance = Utterance()
         for piece in ("a", "", "b"):
@@ -96,7 +96,7 @@ def test_an_utterance_yields_its_pieces_and_ends_for_good() -> None:
     asyncio.run(main())
 
 
-def test_pieces_and_the_whole_text_are_one_utterance() -> None:
+def test_pieces_and_an_output_with_the_same_text_are_one_utterance() -> None:
     async def talk(conversation: Conversation, spoken: list[Utterance]) -> None:
         assert await answer(conversation, "count") == ["one |two"]
         assert spoken == []
@@ -104,7 +104,7 @@ def test_pieces_and_the_whole_text_are_one_utterance() -> None:
     converse(talk, talker)
 
 
-def test_pieces_that_end_in_a_space_are_not_said_twice() -> None:
+def test_an_output_without_the_last_space_of_its_pieces_is_not_said_again() -> None:
     module = rs.Module("module", requires=[rawio])
 
     @module.rule(when=rawio.input.changed, writes=rawio.output, emits=rawio.piece)
@@ -119,7 +119,7 @@ def test_pieces_that_end_in_a_space_are_not_said_twice() -> None:
     converse(talk, module)
 
 
-def test_a_text_that_differs_from_its_pieces_is_a_separate_utterance() -> None:
+def test_an_output_that_differs_from_its_pieces_is_a_separate_utterance() -> None:
     module = rs.Module("module", requires=[rawio])
 
     @module.rule(when=rawio.input.changed, writes=rawio.output, emits=rawio.piece)
@@ -148,7 +148,7 @@ def test_a_rule_that_fails_ends_its_utterance() -> None:
     converse(talk, module)
 
 
-def test_an_utterance_without_an_answer_is_spoken() -> None:
+def test_an_utterance_outside_of_an_answer_goes_to_the_speak_function() -> None:
     async def talk(conversation: Conversation, spoken: list[Utterance]) -> None:
         conversation.hear("hello")
         await conversation.context.quiet()
@@ -157,7 +157,7 @@ def test_an_utterance_without_an_answer_is_spoken() -> None:
     converse(talk, echo)
 
 
-def test_an_answer_waits_for_the_one_before() -> None:
+def test_a_second_answer_waits_for_the_first() -> None:
     async def talk(conversation: Conversation, spoken: list[Utterance]) -> None:
         both = await asyncio.gather(answer(conversation, "a"), answer(conversation, "b"))
         assert both == [["one |two"], ["one |two"]]
@@ -166,7 +166,7 @@ def test_an_answer_waits_for_the_one_before() -> None:
     converse(talk, talker)
 
 
-def test_blank_words_are_not_heard() -> None:
+def test_blank_input_does_not_reach_the_agent() -> None:
     async def talk(conversation: Conversation, spoken: list[Utterance]) -> None:
         assert await answer(conversation, " \n") == []
         assert conversation.context.read(rawio.input) == ""
@@ -177,7 +177,7 @@ def test_blank_words_are_not_heard() -> None:
 # ------------------------------------------------------------------------------------------- interruption
 
 
-def test_an_answer_that_is_closed_is_interrupted() -> None:
+def test_closing_an_answer_interrupts_the_agent() -> None:
     async def talk(conversation: Conversation, spoken: list[Utterance]) -> None:
         async with aclosing(conversation.answer("count")) as utterances:
             async for utterance in utterances:
@@ -192,7 +192,7 @@ def test_an_answer_that_is_closed_is_interrupted() -> None:
 
 
 @pytest.mark.parametrize("module", [talker, stubborn])
-def test_nothing_more_is_said_of_an_interrupted_utterance(module: rs.Module) -> None:
+def test_an_interrupted_utterance_gets_no_more_pieces(module: rs.Module) -> None:
     async def talk(conversation: Conversation, spoken: list[Utterance]) -> None:
         conversation.hear("count")
         await past(0.5)
@@ -204,7 +204,7 @@ def test_nothing_more_is_said_of_an_interrupted_utterance(module: rs.Module) -> 
     converse(talk, module)
 
 
-def test_words_right_after_an_interruption_are_answered() -> None:
+def test_the_agent_answers_words_that_come_right_after_an_interruption() -> None:
     async def talk(conversation: Conversation, spoken: list[Utterance]) -> None:
         conversation.hear("count")
         await past(0.5)
@@ -214,10 +214,10 @@ def test_words_right_after_an_interruption_are_answered() -> None:
     converse(talk, talker)
 
 
-# ------------------------------------------------------------------------------------------- life
+# ------------------------------------------------------------------------------------------- beginning and end
 
 
-def test_the_user_comes_and_goes() -> None:
+def test_the_user_is_added_at_the_beginning_and_removed_at_the_end() -> None:
     seen: list[list[str]] = []
     module = rs.Module("module", requires=[interloc, rawio])
 
@@ -226,7 +226,7 @@ def test_the_user_comes_and_goes() -> None:
         seen.append([key[:5] for key in ctx[interloc.users]])
 
     async def talk(conversation: Conversation, spoken: list[Utterance]) -> None:
-        await conversation.begin()  # a second time, which does nothing
+        await conversation.begin()  # the second call does nothing
         await conversation.end()
         await conversation.end()
 
@@ -251,7 +251,7 @@ def test_ending_waits_for_an_answer_and_a_farewell_up_to_a_limit() -> None:
 
 
 @pytest.mark.parametrize("whole", ["I think so.", "I think so. ", "I think so. Yes."])
-def test_pieces_that_end_in_a_space_and_the_whole_are_one_utterance(whole: str) -> None:
+def test_a_later_output_completes_the_utterance_of_its_pieces(whole: str) -> None:
     writer = rs.Module("writer", requires=[rawio])
 
     @writer.rule(when=rawio.input.changed, writes=rawio.output, emits=rawio.piece)
@@ -280,7 +280,7 @@ def test_ending_at_once_does_not_wait_for_utterances() -> None:
     converse(talk, talker)
 
 
-def test_only_the_agents_own_wish_to_leave_is_reported() -> None:
+def test_until_agent_leaves_returns_only_if_the_agent_itself_ends_the_conversation() -> None:
     module = rs.Module("module", requires=[rawio])
 
     @module.rule(when=rawio.input.changed, writes=rawio.output)
@@ -325,12 +325,12 @@ def test_each_conversation_gets_a_context_of_the_same_policy(tmp_path: Path) -> 
     assert contexts_of(tmp_path / "agent.yml")().settings["idle"].bored_after == 7  # type: ignore[attr-defined]
 
 
-def test_a_context_serves_one_conversation() -> None:
+def test_a_given_context_is_used_for_the_conversation() -> None:
     context = rs.Context(echo)
     assert contexts_of(context)() is context
 
 
-def test_wrong_agents_are_refused(tmp_path: Path) -> None:
+def test_wrong_agents_are_refused_with_a_message(tmp_path: Path) -> None:
     with pytest.raises(DeclarationError, match="requires rawio"):
         contexts_of(rs.Module("deaf"))
     with pytest.raises(UsageError, match="cannot read"):

@@ -1,4 +1,4 @@
-"""A working folder for each test, and cleanup of the modules that commands import."""
+"""A working folder for each test. Modules that a test imports from it are removed from ``sys.modules``."""
 
 import sys
 from collections.abc import Iterator
@@ -9,7 +9,7 @@ import pytest
 
 @pytest.fixture
 def folder(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Iterator[Path]:
-    """An empty current folder. Modules imported from it are removed afterwards."""
+    """An empty folder, which is the working folder. Modules imported from it are removed after the test."""
     monkeypatch.chdir(tmp_path)
     monkeypatch.setattr(sys, "path", list(sys.path))
     before = set(sys.modules)

@@ -33,7 +33,7 @@ def write(path: Path, text: str) -> Path:
 
 
 def complaints(errors: str) -> str:
-    """Return the error output without warnings about a busy machine."""
+    """Return the error output without the warnings that a busy machine causes."""
     return "".join(line for line in errors.splitlines(keepends=True) if "blocked the loop" not in line)
 
 
@@ -41,7 +41,7 @@ def call(capsys: pytest.CaptureFixture[str], *arguments: str) -> tuple[int, str,
     """Call the command line; return its exit code, output and error output. A traceback fails the test."""
     try:
         code = main(arguments)
-    except SystemExit as ended:  # of argparse
+    except SystemExit as ended:  # argparse raises it
         assert isinstance(ended.code, int)
         code = ended.code
     out, errors = capsys.readouterr()

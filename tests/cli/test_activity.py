@@ -26,13 +26,15 @@ def recording(tmp_path: Path, name: str, seed: int = 2) -> str:
     return str(file)
 
 
-def test_an_activity_is_guessed(tmp_path: Path, folder: str, capsys: pytest.CaptureFixture[str]) -> None:
+def test_guess_names_the_activity(tmp_path: Path, folder: str, capsys: pytest.CaptureFixture[str]) -> None:
     assert main(["activity", "guess", recording(tmp_path, "rowing"), "--folder", folder]) == 0
     line = capsys.readouterr().out.strip()
     assert line.endswith("%  rowing")
 
 
-def test_a_movement_is_taught_and_then_guessed(tmp_path: Path, folder: str, capsys: pytest.CaptureFixture[str]) -> None:
+def test_guess_names_a_movement_that_teach_has_learnt(
+    tmp_path: Path, folder: str, capsys: pytest.CaptureFixture[str]
+) -> None:
     file = recording(tmp_path, "skiing")
     assert main(["activity", "guess", file, "--folder", folder]) == 0
     assert capsys.readouterr().out.strip().endswith("unknown")
@@ -71,10 +73,10 @@ def test_wrong_use_is_reported(
     assert not Path(folder).exists()
 
 
-def test_people_who_walk_in_a_real_video_are_unknown_and_a_demonstration_that_would_not_be_recognised_is_reported(
+def test_walking_in_a_real_video_is_unknown_and_is_a_poor_demonstration(
     folder: str, capsys: pytest.CaptureFixture[str], monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    """Nobody has taught the recogniser to know walking. In this video, people come and go. It is read once."""
+    """The recogniser does not know walking. Several people come and go in the video, so it is a poor demonstration."""
     assert VIDEO.is_file(), "the video of the tests is missing: run make test, which fetches it"
     monkeypatch.setattr(activity, "_poses", functools.cache(activity._poses))
     assert main(["activity", "guess", str(VIDEO), "--folder", folder]) == 0

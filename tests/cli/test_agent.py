@@ -1,4 +1,4 @@
-"""The arguments that name an agent: four kinds of names, agent files, settings; one line for each mistake."""
+"""The arguments that name an agent: names of modules, agent files and settings. Each mistake gets one line."""
 
 import re
 from importlib.metadata import EntryPoint
@@ -19,14 +19,14 @@ Capture = pytest.CaptureFixture[str]
 
 
 def run(capsys: Capture, *arguments: str) -> str:
-    """Run an agent that ends by itself, and return what it printed."""
+    """Run an agent that ends by itself; return its output."""
     code, out, errors = call(capsys, "run", *arguments)
     assert (code, errors) == (0, "")
     return out
 
 
 def refused(capsys: Capture, *arguments: str, code: int = 2) -> str:
-    """Run an agent that cannot run, and return the message."""
+    """Call `run` with arguments that it refuses; return the message."""
     found, out, errors = call(capsys, "run", *arguments)
     assert (found, out) == (code, ""), errors
     assert errors.startswith("ravestate run: ")
@@ -58,7 +58,7 @@ def test_a_module_is_found_by_a_dotted_path(folder: Path, capsys: Capture) -> No
     assert load_module("pkg.inner:other").name == "other"
 
 
-def test_a_module_is_found_by_the_name_of_its_package_or_file_here(folder: Path, capsys: Capture) -> None:
+def test_a_module_is_found_by_its_package_or_file_name_in_the_working_folder(folder: Path, capsys: Capture) -> None:
     write(folder / "pkg" / "__init__.py", HELLO)
     write(folder / "single.py", HELLO)
     assert run(capsys, "pkg").startswith("Hello")
@@ -101,8 +101,8 @@ def install(monkeypatch: pytest.MonkeyPatch, **points: str) -> None:
     monkeypatch.setattr(modules, "entry_points", entry_points)
 
 
-def test_the_installed_package_uses_the_right_group() -> None:
-    assert list(modules.entry_points(group="ravestate.modules")) == []  # the built-in ones need none
+def test_ravestate_itself_installs_no_entry_points() -> None:
+    assert list(modules.entry_points(group="ravestate.modules")) == []  # built-in modules need none
 
 
 def test_a_module_named_twice_is_loaded_once(folder: Path, capsys: Capture) -> None:
@@ -127,7 +127,7 @@ def test_a_module_named_twice_is_loaded_once(folder: Path, capsys: Capture) -> N
         (":module", "module ':module' fails when it is imported: ValueError: Empty module name"),
     ],
 )
-def test_a_missing_module_has_a_message(name: str, text: str, folder: Path, capsys: Capture) -> None:
+def test_a_missing_module_is_refused_with_a_message(name: str, text: str, folder: Path, capsys: Capture) -> None:
     assert refused(capsys, name).startswith(text)
 
 
@@ -142,20 +142,22 @@ def test_a_missing_module_has_a_message(name: str, text: str, folder: Path, caps
         ("class Odd(BaseException): ...\nraise Odd('x')\n", r"\S+bad\.py:2: Odd: x"),
     ],
 )
-def test_a_module_that_fails_on_import_has_a_message_with_its_line(
+def test_the_message_for_a_module_that_fails_on_import_has_the_line(
     way: str, content: str, text: str, folder: Path, capsys: Capture
 ) -> None:
     write(folder / "bad.py", content)
     assert re.fullmatch(rf"\S+ ?\S* fails when it is (loaded|imported): {text}", refused(capsys, way))
 
 
-def test_ctrl_c_during_an_import_is_not_the_module_s_fault(folder: Path, capsys: Capture) -> None:
+def test_ctrl_c_during_an_import_is_not_reported_as_a_fault_of_the_module(folder: Path, capsys: Capture) -> None:
     write(folder / "slow.py", "raise KeyboardInterrupt")
     for way in ("./slow.py", "slow"):
         assert call(capsys, "run", way) == (130, "", "")
 
 
-def test_a_module_that_imports_a_missing_package_has_a_message_that_names_it(folder: Path, capsys: Capture) -> None:
+def test_the_message_for_a_module_that_imports_a_missing_package_names_the_package(
+    folder: Path, capsys: Capture
+) -> None:
     write(folder / "needs.py", "import no_such_package\n")
     assert "No module named 'no_such_package'" in refused(capsys, "./needs.py")
     assert "No module named 'no_such_package'" in refused(capsys, "needs")
@@ -177,7 +179,7 @@ def test_a_file_without_a_module_is_refused(folder: Path, capsys: Capture) -> No
 # ---------------------------------------------------------------------------------------- agent files
 
 
-def test_an_agent_file_names_modules_relative_to_itself(folder: Path, capsys: Capture) -> None:
+def test_paths_in_an_agent_file_are_relative_to_the_file(folder: Path, capsys: Capture) -> None:
     write(folder / "deep" / "parts" / "hello.py", HELLO)
     write(
         folder / "deep" / "agent.yaml",
@@ -191,11 +193,11 @@ def test_an_agent_file_names_modules_relative_to_itself(folder: Path, capsys: Ca
     )
     first = run(capsys, "deep/agent.yaml")
     assert first.startswith("Salut 1.0 ('a', 'b') ")
-    assert run(capsys, "-f", "deep/agent.yaml") == first  # by its seed
+    assert run(capsys, "-f", "deep/agent.yaml") == first  # the same output, because the file has a seed
     assert run(capsys, "deep/agent.yaml", "--seed", "4") != first
 
 
-def test_files_and_modules_may_be_combined(folder: Path, capsys: Capture) -> None:
+def test_an_agent_file_and_modules_may_be_combined(folder: Path, capsys: Capture) -> None:
     write(folder / "hello.py", HELLO)
     write(folder / "settings.yml", "settings: {hello: {greeting: Ahoy}}")
     assert run(capsys, "./hello.py", "-f", "settings.yml").startswith("Ahoy")
@@ -203,7 +205,9 @@ def test_files_and_modules_may_be_combined(folder: Path, capsys: Capture) -> Non
     assert "name a module, or an agent file that names modules" in refused(capsys)
 
 
-def test_secrets_come_from_the_environment(folder: Path, capsys: Capture, monkeypatch: pytest.MonkeyPatch) -> None:
+def test_an_agent_file_may_take_secrets_from_environment_variables(
+    folder: Path, capsys: Capture, monkeypatch: pytest.MonkeyPatch
+) -> None:
     write(folder / "hello.py", HELLO)
     write(
         folder / "agent.yaml",
@@ -238,7 +242,7 @@ def test_secrets_come_from_the_environment(folder: Path, capsys: Capture, monkey
         ("modules: [./gone.py]", "there is no file ./gone.py"),
     ],
 )
-def test_a_wrong_agent_file_has_a_message(content: str, text: str, folder: Path, capsys: Capture) -> None:
+def test_a_wrong_agent_file_is_refused_with_a_message(content: str, text: str, folder: Path, capsys: Capture) -> None:
     write(folder / "agent.yaml", content)
     assert refused(capsys, "agent.yaml").startswith(text)
 
@@ -267,7 +271,7 @@ def test_a_setting_nested_too_deeply_counts_as_text(capsys: Capture) -> None:
     assert "= '[[[" in refused(capsys, "idle", "--set", f"idle.bored_after={'[' * 5_000}", code=2)
 
 
-def test_check_and_graph_first_name_the_python_code_that_an_agent_file_runs(folder: Path, capsys: Capture) -> None:
+def test_check_and_graph_first_name_the_python_files_that_an_agent_file_runs(folder: Path, capsys: Capture) -> None:
     write(folder / "deep" / "hello.py", HELLO)
     write(folder / "other.py", "print('ran'); import ravestate as rs; module = rs.Module('other')")
     write(folder / "deep" / "agent.yaml", "modules: [rawio, ./hello.py, other]")
@@ -275,16 +279,16 @@ def test_check_and_graph_first_name_the_python_code_that_an_agent_file_runs(fold
         code, _, errors = call(capsys, command, "deep/agent.yaml")
         said = f"ravestate {command}: deep/agent.yaml runs Python code: {Path('deep/hello.py')}, other\n"
         assert (code, errors) == (0, said)
-    assert run(capsys, "deep/agent.yaml").startswith("Hello")  # and nothing on stderr
+    assert run(capsys, "deep/agent.yaml").startswith("Hello")  # `run` also checks that nothing is on stderr
 
 
-def test_an_agent_file_of_built_in_modules_runs_no_code_of_the_user(folder: Path, capsys: Capture) -> None:
+def test_check_names_no_python_files_if_the_agent_file_has_only_built_in_modules(folder: Path, capsys: Capture) -> None:
     write(folder / "hello.py", HELLO)
     write(folder / "agent.yaml", "modules: [rawio]")
     assert call(capsys, "check", "agent.yaml", "./hello.py")[2] == ""
 
 
-def test_one_message_has_all_mistakes_of_an_agent_file(folder: Path, capsys: Capture) -> None:
+def test_one_message_lists_all_mistakes_of_an_agent_file(folder: Path, capsys: Capture) -> None:
     write(
         folder / "agent.yaml",
         """
@@ -315,7 +319,7 @@ def test_one_message_has_all_mistakes_of_an_agent_file(folder: Path, capsys: Cap
     ]
 
 
-def test_an_unreadable_agent_file_has_a_message(folder: Path, capsys: Capture) -> None:
+def test_an_unreadable_agent_file_is_refused_with_a_message(folder: Path, capsys: Capture) -> None:
     assert refused(capsys, "gone.yaml") == "cannot read gone.yaml: No such file or directory"
     (folder / "folder.yaml").mkdir()
     assert refused(capsys, "folder.yaml") == "cannot read folder.yaml: Is a directory"
@@ -350,7 +354,7 @@ def test_set_overrides_the_environment_which_overrides_the_file(
         ("hello.words=[a, b]", "Hello 1.0 ('a', 'b')"),
     ],
 )
-def test_a_set_value_is_text_for_a_text_field_and_yaml_for_others(
+def test_set_reads_text_for_a_text_field_and_yaml_for_other_fields(
     text: str, said: str, folder: Path, capsys: Capture
 ) -> None:
     write(folder / "hello.py", HELLO)
@@ -362,16 +366,16 @@ def test_the_last_of_two_values_for_a_setting_wins(folder: Path, capsys: Capture
     assert run(capsys, "./hello.py", "--set", "hello.pause=2", "--set", "hello.pause=3").startswith("Hello 3.0")
 
 
-def test_required_modules_have_settings_too(folder: Path) -> None:
+def test_with_required_adds_the_required_modules_even_in_a_cycle(folder: Path) -> None:
     write(folder / "user.py", HELLO.replace("    hello = ", "    base = ").replace("@hello", "@base"))
     base = rs.Module("base")
     top = rs.Module("top", requires=[base])
-    base.requires = [top]  # a cycle is the compiler's business
+    base.requires = [top]  # only the compiler refuses a cycle
     assert spec.with_required([top]) == [top, base]
 
 
 @pytest.mark.parametrize("text", ["hello", "hello.greeting", "greeting=x", "=x", ".=x", "hello.=x", ".greeting=x"])
-def test_a_malformed_set_has_a_message(text: str, folder: Path, capsys: Capture) -> None:
+def test_a_malformed_set_is_refused_with_a_message(text: str, folder: Path, capsys: Capture) -> None:
     assert refused(capsys, "rawio", "--set", text) == (
         f"--set {text}: write --set module.key=value, e.g. --set idle.bored_after=10"
     )
@@ -394,7 +398,7 @@ def test_an_unknown_setting_is_wrong_use(text: str, fault: str, capsys: Capture)
     assert refused(capsys, "idle", "rawio", "--set", text).startswith(f"--set {text}: {fault}")
 
 
-def test_one_message_has_all_unknown_settings(capsys: Capture) -> None:
+def test_one_message_lists_all_unknown_settings(capsys: Capture) -> None:
     assert len(refused(capsys, "idle", "--set", "a.b=1", "--set", "idle.c=1", "--set", "d").splitlines()) == 3
 
 
@@ -410,6 +414,6 @@ def test_a_value_that_does_not_fit_its_setting_is_refused(text: str, fault: str,
     assert fault in refused(capsys, "idle", "rawio", "--set", text, code=2)
 
 
-def test_an_agent_has_the_options_of_its_contexts() -> None:
+def test_options_returns_the_arguments_for_a_context() -> None:
     options: Any = spec.AgentSpec([], {"a": {}}, 3, 0.5).options()
     assert options == {"settings": {"a": {}}, "seed": 3, "patience": 0.5}

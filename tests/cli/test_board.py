@@ -1,4 +1,4 @@
-"""``ravestate board``: its pages, and its messages for wrong use."""
+"""``ravestate board``: the pages that it serves, and its messages for wrong use."""
 
 import json
 import re
@@ -33,7 +33,7 @@ async def repeat(ctx):
 
 
 class Command:
-    """The command in its own process, on its own port."""
+    """``ravestate board`` in a separate process, on a free port."""
 
     def __init__(self, *arguments: str) -> None:
         self.process = subprocess.Popen(
@@ -51,7 +51,7 @@ class Command:
         return found[1]
 
     def end(self) -> int:
-        """End it as Ctrl-C does; return its exit code."""
+        """End the process as Ctrl-C does; return its exit code."""
         self.process.send_signal(signal.SIGINT)
         self.process.communicate(timeout=20)
         return self.process.returncode
@@ -62,7 +62,7 @@ def test_the_printed_addresses_lead_to_the_agent_and_the_board(tmp_path: Path) -
     command = Command(str(tmp_path / "echo.py"), "--set", "webio.token=open-sesame-please")
     try:
         agent, board = command.address("agent"), command.address("board")
-        assert board == f"{agent}board/"  # the output is not a terminal: the token stays out of it
+        assert board == f"{agent}board/"  # no token, because the output is not a terminal
         page = httpx.get(board)
         assert "board.js" in page.text
         assert "script-src 'self'" in page.headers["content-security-policy"]
@@ -76,7 +76,7 @@ def test_the_printed_addresses_lead_to_the_agent_and_the_board(tmp_path: Path) -
         assert command.end() == 0
 
 
-def test_without_modules_it_serves_the_complete_agent(tmp_path: Path) -> None:
+def test_without_modules_the_command_serves_the_complete_agent(tmp_path: Path) -> None:
     command = Command("--without", "wildtalk")
     try:
         agent = command.address("agent")
@@ -115,7 +115,7 @@ def test_without_a_language_model_the_page_says_how_to_get_one(
     ("arguments", "models", "has"),
     [([], True, True), ([], False, False), (["--without", "voiceio"], True, False), (["hibye"], True, False)],
 )
-def test_the_complete_agent_hears_where_speech_is_set_up(
+def test_the_complete_agent_has_voiceio_only_if_speech_is_set_up(
     monkeypatch: pytest.MonkeyPatch, arguments: list[str], models: bool, has: bool
 ) -> None:
     served: list[Agent] = []
@@ -138,7 +138,7 @@ def test_the_complete_agent_hears_where_speech_is_set_up(
         (["--without", "charades"], True, {"visionio"}),
     ],
 )
-def test_the_complete_agent_sees_where_eyes_are_set_up(
+def test_the_complete_agent_has_visionio_only_if_the_eyes_are_set_up(
     monkeypatch: pytest.MonkeyPatch, arguments: list[str], there: bool, seen: set[str]
 ) -> None:
     served: list[Agent] = []
@@ -157,7 +157,7 @@ def test_the_complete_agent_sees_where_eyes_are_set_up(
     assert {module.name for module in served[0].policy.modules} & {"visionio", "charades"} == seen
 
 
-def test_a_recorded_trace_needs_no_agent(tmp_path: Path) -> None:
+def test_open_shows_a_recorded_trace_without_an_agent(tmp_path: Path) -> None:
     recorded(tmp_path / "trace.json")
     command = Command("--open", str(tmp_path / "trace.json"))
     try:
@@ -185,7 +185,7 @@ def test_a_recorded_trace_needs_no_agent(tmp_path: Path) -> None:
         (["hibye", "--set", "webio.host=0.0.0.0"], 1, "a token is needed"),
     ],
 )  # fmt: skip
-def test_a_mistake_gives_a_message(
+def test_wrong_arguments_give_a_message(
     arguments: list[str], code: int, words: str, capsys: pytest.CaptureFixture[str]
 ) -> None:
     assert main(["board", *arguments]) == code

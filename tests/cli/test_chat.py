@@ -22,7 +22,7 @@ Capture = pytest.CaptureFixture[str]
 
 @pytest.fixture
 def started(monkeypatch: pytest.MonkeyPatch) -> list[tuple[list[str], dict[str, Any]]]:
-    """The arguments of each run that the command starts: names of modules, and options."""
+    """The runs that the command starts, each as the names of its modules and its options."""
     seen: list[tuple[list[str], dict[str, Any]]] = []
 
     def run(*modules: Any, **options: Any) -> None:
@@ -59,7 +59,7 @@ def test_modules_can_be_added_and_left_out(folder: Path, started: Any, capsys: C
     assert options["settings"] == {"hello": {"pause": 2}}
 
 
-def test_leaving_out_an_unknown_module_is_wrong_use(started: Any, capsys: Capture) -> None:
+def test_the_option_without_refuses_an_unknown_module(started: Any, capsys: Capture) -> None:
     code, out, errors = call(capsys, "chat", "--without", "wildtlk")
     assert (code, out, started) == (2, "", [])
     assert errors == "ravestate chat: --without wildtlk: the agent has no such module; did you mean 'wildtalk'?\n"
@@ -81,7 +81,7 @@ def test_the_help_names_the_file_of_the_memory(
     assert str(history_file()).startswith("/state/")
 
 
-def test_a_user_without_a_home_folder_gets_help(capsys: Capture, monkeypatch: pytest.MonkeyPatch) -> None:
+def test_help_works_for_a_user_without_a_home_folder(capsys: Capture, monkeypatch: pytest.MonkeyPatch) -> None:
     def homeless() -> Path:
         raise RuntimeError("Could not determine home directory.")
 
@@ -91,13 +91,15 @@ def test_a_user_without_a_home_folder_gets_help(capsys: Capture, monkeypatch: py
     assert call(capsys, "chat", "--help")[0] == 0
 
 
-def test_chat_needs_no_module() -> None:
+def test_chat_may_be_called_without_modules() -> None:
     parser = argparse.ArgumentParser()
     chat.add_arguments(parser)
     assert parser.parse_args([]).modules == []
 
 
-def test_one_line_says_which_model_talks(started: Any, capsys: Capture, monkeypatch: pytest.MonkeyPatch) -> None:
+def test_one_line_says_which_model_makes_small_talk(
+    started: Any, capsys: Capture, monkeypatch: pytest.MonkeyPatch
+) -> None:
     monkeypatch.setenv("RAVESTATE_WILDTALK_SEARCH", "true")
     monkeypatch.setattr(local_servers, "PORTS", {})
     monkeypatch.setattr(found_models, "folders", list)
@@ -111,9 +113,9 @@ def test_one_line_says_which_model_talks(started: Any, capsys: Capture, monkeypa
     assert call(capsys, "chat", "--without", "wildtalk") == (0, "", "")
 
 
-@pytest.mark.skipif(not Path("/dev/full").exists(), reason="there is no device that is always full")
-def test_output_that_cannot_be_written_is_a_failure() -> None:
-    # Without the other modules the process starts quickly.
+@pytest.mark.skipif(not Path("/dev/full").exists(), reason="the system has no /dev/full")
+def test_chat_fails_if_its_output_cannot_be_written() -> None:
+    # Leave out most modules, so that the process starts quickly.
     others = [option for name in COMPLETE if name != "hibye" for option in ("--without", name)]
     command = [str(Path(sys.executable).parent / "ravestate"), "chat", *others]
     with Path("/dev/full").open("w") as full:
@@ -140,21 +142,23 @@ sys.exit(main(sys.argv[1:]))
 """
 
 
-def without_the_extra(*arguments: str, text: str = "") -> subprocess.CompletedProcess[str]:
+def without_extra_packages(*arguments: str, text: str = "") -> subprocess.CompletedProcess[str]:
     return subprocess.run(
         [sys.executable, "-c", WITHOUT, *arguments], input=text, capture_output=True, text=True, timeout=60, check=False
     )
 
 
-def test_without_the_extra_one_line_says_what_to_type_and_the_agent_talks() -> None:
-    run = without_the_extra("chat", text="hello\nmy name is Ada\nbye\n")
+def test_without_the_extra_packages_the_agent_talks_and_one_line_says_what_to_install() -> None:
+    run = without_extra_packages("chat", text="hello\nmy name is Ada\nbye\n")
     (line,) = complaints(run.stderr).splitlines()
     assert line.startswith("ravestate chat: the agent talks without nlp, ")
     assert line.endswith(": pip install 'ravestate[chat]'")
     assert run.returncode == 0 and len(run.stdout.splitlines()) >= 2
 
 
-def test_a_module_with_settings_stays(started: Any, capsys: Capture, monkeypatch: pytest.MonkeyPatch) -> None:
+def test_a_module_with_settings_is_not_left_out_if_its_package_is_missing(
+    started: Any, capsys: Capture, monkeypatch: pytest.MonkeyPatch
+) -> None:
     monkeypatch.setitem(sys.modules, "ladybug", None)
     code, _, errors = call(capsys, "chat", "--set", "ontology.url=bolt://memory")
     ((names, _),) = started
@@ -162,8 +166,8 @@ def test_a_module_with_settings_stays(started: Any, capsys: Capture, monkeypatch
     assert names == ["conio", *COMPLETE]
 
 
-def test_asking_the_documents_without_the_extra_says_what_to_type(tmp_path: Path) -> None:
-    run = without_the_extra("genqa", "ask", "What is the capital of Peru?", "--index", str(tmp_path / "index"))
+def test_genqa_ask_without_the_extra_packages_says_what_to_install(tmp_path: Path) -> None:
+    run = without_extra_packages("genqa", "ask", "What is the capital of Peru?", "--index", str(tmp_path / "index"))
     assert run.returncode == 1 and "Traceback" not in run.stderr
     assert "pip install 'ravestate[nlp]'" in complaints(run.stderr)
 
@@ -174,7 +178,7 @@ def test_a_missing_microphone_is_reported_before_the_agent_greets(started: Any, 
     assert "no microphone: " in errors or "no recogniser: " in errors
 
 
-def test_a_recording_needs_no_microphone(started: Any, capsys: Capture) -> None:
+def test_chat_with_a_recording_needs_no_microphone(started: Any, capsys: Capture) -> None:
     files = ("--set", "voiceio.source=in.wav", "--set", "voiceio.sink=out.wav", "--set", "voiceio.model=tiny.en")
     assert call(capsys, "chat", "voiceio", *files) == (0, "", "")
     assert len(started) == 1

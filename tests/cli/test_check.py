@@ -1,4 +1,4 @@
-"""``ravestate check``: faults, and findings that make a rule fail, give exit code 1; other findings give 0."""
+"""``ravestate check``: the exit code is 1 for faults and for findings that make a rule fail, otherwise 0."""
 
 from pathlib import Path
 
@@ -10,7 +10,7 @@ from ravestate.modules import BUILT_IN
 Capture = pytest.CaptureFixture[str]
 
 
-def test_an_agent_without_findings(folder: Path, capsys: Capture) -> None:
+def test_check_reports_an_agent_without_findings(folder: Path, capsys: Capture) -> None:
     write(folder / "hello.py", HELLO)
     assert call(capsys, "check", "./hello.py") == (
         0,
@@ -19,7 +19,7 @@ def test_an_agent_without_findings(folder: Path, capsys: Capture) -> None:
     )
 
 
-def test_findings_are_printed_and_are_no_faults(folder: Path, capsys: Capture) -> None:
+def test_findings_are_printed_but_are_not_faults(folder: Path, capsys: Capture) -> None:
     write(
         folder / "odd.py",
         """
@@ -41,7 +41,7 @@ def test_findings_are_printed_and_are_no_faults(folder: Path, capsys: Capture) -
     assert lines[-1].endswith("no faults, 3 findings")
 
 
-def test_examples_that_two_intents_share_are_findings(folder: Path, capsys: Capture) -> None:
+def test_an_example_that_fits_two_intents_is_a_finding(folder: Path, capsys: Capture) -> None:
     write(
         folder / "shop.py",
         """
@@ -85,7 +85,7 @@ MISSPELT = """
         ('rawio.outptu] = "Hello!"', "rawio.output] = ctx.sleep(1)\n        ctx.sleep(1)", "await: rule greeter:greet"),
     ],
 )
-def test_findings_that_break_a_rule_give_exit_code_1(
+def test_findings_that_make_a_rule_fail_give_exit_code_1(
     right: str, wrong: str, finding: str, folder: Path, capsys: Capture
 ) -> None:
     write(folder / "greeter.py", MISSPELT.replace(right, wrong))
@@ -95,7 +95,7 @@ def test_findings_that_break_a_rule_give_exit_code_1(
     assert out.endswith("no faults, 1 finding (1 makes a rule fail at run time)\n")
 
 
-def test_help_names_the_exit_code(capsys: Capture) -> None:
+def test_help_explains_the_exit_code(capsys: Capture) -> None:
     assert "Exit code 1: the agent has faults" in call(capsys, "check", "--help")[1]
 
 
@@ -121,7 +121,7 @@ def test_check_prints_every_fault_at_once(folder: Path, capsys: Capture) -> None
     assert "write requires=[far]" in errors and "weight=-1.0 must be above 0" in errors
 
 
-def test_settings_are_checked_with_their_declarations(folder: Path, capsys: Capture) -> None:
+def test_check_finds_a_setting_that_makes_a_declaration_faulty(folder: Path, capsys: Capture) -> None:
     write(
         folder / "late.py",
         """
@@ -165,4 +165,4 @@ def test_the_built_in_modules_have_no_faults(name: str, capsys: Capture) -> None
     code, out, _ = call(capsys, "check", name)
     assert code == 0
     kinds = {line.split(":")[0] for line in out.splitlines()[:-1]}
-    assert kinds <= {"unheard"}  # other modules listen
+    assert kinds <= {"unheard"}  # signals for rules of other modules

@@ -1,4 +1,4 @@
-"""``ravestate genqa``: documents in, answers out, and no traceback for a bad file."""
+"""``ravestate genqa`` indexes documents and answers questions. A bad file gives a message, not a traceback."""
 
 import json
 import sqlite3
@@ -12,7 +12,7 @@ from ravestate.modules.skill.genqa import collecting, places
 
 @pytest.fixture
 def docs(folder: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
-    """Two documents; the index is in a data folder of the test's own."""
+    """A folder with two documents. The index goes into a data folder for this test."""
     monkeypatch.setattr("sys.platform", "linux")
     monkeypatch.setenv("XDG_DATA_HOME", str(folder / "data"))
     monkeypatch.delenv("RAVESTATE_GENQA_INDEX", raising=False)
@@ -24,7 +24,7 @@ def docs(folder: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
     return docs
 
 
-def test_index_list_and_forget(docs: Path, capsys: pytest.CaptureFixture[str]) -> None:
+def test_documents_can_be_indexed_listed_and_forgotten(docs: Path, capsys: pytest.CaptureFixture[str]) -> None:
     code, out, errors = call(capsys, "genqa", "index", "docs")
     assert (code, errors) == (0, "")
     assert out == f"2 added; 2 new passages in {docs.parent / 'data' / 'ravestate' / 'genqa.sqlite'}\n"
@@ -41,7 +41,9 @@ def test_index_list_and_forget(docs: Path, capsys: pytest.CaptureFixture[str]) -
     assert "nothing was read from docs/tram.md" in errors
 
 
-def test_ask_shows_answer_source_confidence_and_candidates(docs: Path, capsys: pytest.CaptureFixture[str]) -> None:
+def test_ask_shows_the_answer_with_its_source_confidence_and_candidates(
+    docs: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
     call(capsys, "genqa", "index", "docs")
     code, out, _ = call(capsys, "genqa", "ask", "Who invented the Zorbex engine?")
     assert code == 0
@@ -52,7 +54,9 @@ def test_ask_shows_answer_source_confidence_and_candidates(docs: Path, capsys: p
     assert lines[4].split()[1] == "100%"
 
 
-def test_ask_needs_no_quotation_marks_and_no_documents(docs: Path, capsys: pytest.CaptureFixture[str]) -> None:
+def test_ask_works_without_quotation_marks_and_without_documents(
+    docs: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
     assert call(capsys, "genqa", "ask", "what", "is", "the", "capital", "of", "Peru")[1].startswith(
         "The capital of Peru is Lima."
     )
@@ -97,7 +101,7 @@ def test_an_interrupted_command_says_how_to_continue(
     assert call(capsys, "genqa", "index", "docs")[1].startswith("1 unchanged, 1 added")
 
 
-def test_the_index_file_may_be_given(
+def test_an_option_or_a_variable_names_the_index_file(
     docs: Path, capsys: pytest.CaptureFixture[str], monkeypatch: pytest.MonkeyPatch
 ) -> None:
     call(capsys, "genqa", "--index", "my.sqlite", "index", "docs")
@@ -119,7 +123,7 @@ def test_the_option_for_the_index_may_also_follow_the_action(docs: Path, capsys:
 @pytest.mark.parametrize(
     "action", [["list"], ["index", "docs"], ["forget", "docs"], ["ask", "What is the capital of Peru?"]]
 )
-def test_a_file_that_is_no_index_is_an_error_with_a_message(
+def test_a_file_that_is_no_index_is_refused_with_a_message(
     docs: Path, capsys: pytest.CaptureFixture[str], action: list[str]
 ) -> None:
     (docs / "index.txt").write_text("This is a letter and no index of anything.", encoding="utf-8")
@@ -129,7 +133,7 @@ def test_a_file_that_is_no_index_is_an_error_with_a_message(
     assert "--index /path/to/index.sqlite" in errors
 
 
-def test_an_index_of_a_newer_version_is_an_error_with_a_message(docs: Path, capsys: pytest.CaptureFixture[str]) -> None:
+def test_an_index_of_a_newer_version_is_refused_with_a_message(docs: Path, capsys: pytest.CaptureFixture[str]) -> None:
     call(capsys, "genqa", "--index", "my.sqlite", "index", "docs")
     base = sqlite3.connect("my.sqlite")
     base.execute("PRAGMA user_version = 99")

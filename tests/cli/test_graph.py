@@ -47,14 +47,14 @@ def test_dot_and_mermaid_diagrams_are_printed(hello: str, capsys: Capture, forma
         ("a.mermaid", "flowchart"),
     ],
 )
-def test_the_name_of_a_file_decides_its_format(
+def test_the_suffix_of_the_file_decides_the_format(
     hello: str, folder: Path, capsys: Capture, name: str, begins: str
 ) -> None:
     assert call(capsys, "graph", hello, "-o", name) == (0, f"wrote {name}\n", "")
     assert (folder / name).read_text(encoding="utf-8").startswith(begins)
 
 
-def test_a_given_format_overrides_the_name_of_the_file(hello: str, folder: Path, capsys: Capture) -> None:
+def test_the_option_format_overrides_the_suffix_of_the_file(hello: str, folder: Path, capsys: Capture) -> None:
     assert call(capsys, "graph", hello, "-o", "a.txt", "--format", "dot")[0] == 0
     assert (folder / "a.txt").read_text(encoding="utf-8").startswith("digraph")
 
@@ -84,12 +84,12 @@ def test_wrong_use_gives_exit_code_2_and_writes_nothing(
 
 @pytest.fixture(scope="module")
 def complete_agent() -> str:
-    """The diagram of the complete agent, folded."""
+    """The SVG diagram of the complete agent, with each module folded."""
     policy = compile_policy(*(load_module(name) for name in ("conio", *COMPLETE)))
     return svg(fold(build(policy.rules.values())))
 
 
-def test_without_modules_graph_draws_the_agent_of_chat_folded_to_its_modules(
+def test_without_modules_graph_draws_the_complete_agent_with_folded_modules(
     complete_agent: str, capsys: Capture
 ) -> None:
     code, out, errors = call(capsys, "graph")
@@ -120,17 +120,17 @@ def test_some_or_all_modules_can_be_unfolded(capsys: Capture) -> None:
     assert whole[2] == "" and "wildtalk<br/>chat" in whole[1] and not re.search(r"<br/>\d+ rules", whole[1])
 
 
-def test_a_small_agent_is_folded_on_demand(hello: str, capsys: Capture) -> None:
+def test_the_option_fold_folds_a_small_agent(hello: str, capsys: Capture) -> None:
     assert "1 rule)" in call(capsys, "graph", hello, "--fold")[1]
 
 
-def test_an_agent_file_is_drawn(hello: str, folder: Path, capsys: Capture) -> None:
+def test_graph_draws_an_agent_file(hello: str, folder: Path, capsys: Capture) -> None:
     write(folder / "agent.yaml", "modules: [./hello.py]")
     for arguments in (("agent.yaml",), ("-f", "agent.yaml")):
         assert call(capsys, "graph", *arguments)[1] == call(capsys, "graph", hello)[1]
 
 
-def test_slots_that_no_rule_touches_are_left_out(folder: Path, capsys: Capture) -> None:
+def test_slots_that_no_rule_reads_or_writes_are_left_out(folder: Path, capsys: Capture) -> None:
     write(folder / "slots.py", HELLO + "\n    spare = hello.slot('spare')\n")
     out = call(capsys, "graph", "./slots.py", "rawio")[1]
     assert "hello:said" in out and "spare" not in out and "rawio" not in out

@@ -58,7 +58,7 @@ def test_a_misspelt_command_has_a_hint(capsys: Capture) -> None:
     assert code == 2 and errors.endswith("error: there is no command 'chatt'; did you mean 'chat'?\n")
 
 
-def test_options_are_not_guessed_from_their_beginnings(capsys: Capture) -> None:
+def test_abbreviated_options_are_refused(capsys: Capture) -> None:
     code, _, errors = call(capsys, "run", "idle", "--see", "1")
     assert code == 2 and "--see" in errors
 
@@ -95,7 +95,7 @@ def test_wrong_use_of_a_command_shows_its_usage(
 
 
 @pytest.mark.parametrize("flags", [(), ("-v",), ("-vv",)])
-def test_the_flag_for_verbosity_may_be_repeated(flags: tuple[str, ...], capsys: Capture) -> None:
+def test_the_flag_v_may_be_repeated(flags: tuple[str, ...], capsys: Capture) -> None:
     assert call(capsys, *flags, "check", "rawio")[0] == 0
 
 
@@ -109,7 +109,7 @@ def test_ctrl_c_gives_exit_code_130(monkeypatch: pytest.MonkeyPatch) -> None:
     assert main(["check", "rawio"]) == 130
 
 
-def test_a_pipe_that_closes_is_no_error(monkeypatch: pytest.MonkeyPatch) -> None:
+def test_a_closed_pipe_is_no_error(monkeypatch: pytest.MonkeyPatch) -> None:
     from ravestate.cli import check
 
     def broken(options: object) -> int:
@@ -153,4 +153,4 @@ def test_warnings_reach_the_user(folder: Path) -> None:
     run = subprocess.run([command, "run", "./failing.py"], capture_output=True, text=True, timeout=60, check=False)
     assert run.returncode == 0
     assert "ERROR ravestate: rule failing:fail failed: broken" in run.stderr
-    assert run.stderr.count("Traceback") == 1  # that of the rule
+    assert run.stderr.count("Traceback") == 1  # the traceback of the rule

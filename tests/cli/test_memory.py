@@ -1,6 +1,6 @@
 """``ravestate memory`` lists, shows, exports, loads and forgets.
 
-The exit code is 2 for a mistake of the user, and 1 if a file or the memory cannot be used.
+The exit code is 2 for wrong arguments, and 1 if a file or the memory cannot be used.
 """
 
 from __future__ import annotations
@@ -47,7 +47,7 @@ def file(folder: Path) -> Path:
     return path
 
 
-def test_everything_is_listed(file: Path, capsys: Capture) -> None:
+def test_list_shows_all_nodes(file: Path, capsys: Capture) -> None:
     code, out, errors = call(capsys, "memory", "--path", str(file), "list")
     assert code == 0 and errors == f"5 nodes in {file.resolve()}\n"
     lines = [line.rsplit(maxsplit=1) for line in out.splitlines()]
@@ -57,7 +57,7 @@ def test_everything_is_listed(file: Path, capsys: Capture) -> None:
     assert all(line[1].startswith(line[0].split()[0] + ":") for line in lines)
 
 
-def test_a_type_is_listed_and_types_are_counted(file: Path, capsys: Capture) -> None:
+def test_list_shows_the_nodes_of_a_type_or_counts_the_types(file: Path, capsys: Capture) -> None:
     assert call(capsys, "memory", "--path", str(file), "list", "Place")[1].split()[:2] == ["City", "London"]
     _, out, _ = call(capsys, "memory", "--path", str(file), "list", "--types")
     assert [line.split() for line in out.splitlines()] == [["City", "1"], ["Person", "4"]]
@@ -65,7 +65,7 @@ def test_a_type_is_listed_and_types_are_counted(file: Path, capsys: Capture) -> 
     assert code == 2 and errors == "ravestate memory: there is no type 'Persn'; did you mean 'Person'?\n"
 
 
-def test_a_person_is_shown_by_name_or_id(file: Path, capsys: Capture) -> None:
+def test_show_finds_a_person_by_name_or_id(file: Path, capsys: Capture) -> None:
     code, out, _ = call(capsys, "memory", "--path", str(file), "show", "ada ")
     first, *rest = out.splitlines()
     assert code == 0 and rest == ["  name: Ada", "  born: 1815-12-10", "  lives_in -> City London"]
@@ -75,7 +75,7 @@ def test_a_person_is_shown_by_name_or_id(file: Path, capsys: Capture) -> None:
     assert "  <- lives_in Person Ada" in call(capsys, "memory", "--path", str(file), "show", "London")[1]
 
 
-def test_a_name_of_no_node_or_of_several_nodes_is_refused(file: Path, capsys: Capture) -> None:
+def test_a_name_that_no_node_or_several_nodes_have_is_refused(file: Path, capsys: Capture) -> None:
     code, _, errors = call(capsys, "memory", "--path", str(file), "show", "Londn")
     assert code == 2
     assert errors == "ravestate memory: no node is called 'Londn'; did you mean 'London'?\n"
@@ -83,7 +83,7 @@ def test_a_name_of_no_node_or_of_several_nodes_is_refused(file: Path, capsys: Ca
     assert code == 2 and "2 nodes are called 'Bob': give the id of one\n  Person:" in errors
 
 
-def test_everything_is_exported_and_loaded(file: Path, folder: Path, capsys: Capture) -> None:
+def test_load_restores_an_exported_memory(file: Path, folder: Path, capsys: Capture) -> None:
     _, out, _ = call(capsys, "memory", "--path", str(file), "export")
     document = json.loads(out)
     assert len(document["nodes"]) == 5 and len(document["relations"]) == 2
@@ -112,7 +112,7 @@ def test_files_that_cannot_be_written_or_read_are_named(file: Path, folder: Path
 
 
 @pytest.mark.parametrize("answer", ["n\n", "", "\n", "yess\n"])
-def test_nobody_is_forgotten_without_a_yes(
+def test_forget_asks_first_and_forgets_nobody_without_a_yes(
     file: Path, capsys: Capture, monkeypatch: pytest.MonkeyPatch, answer: str
 ) -> None:
     monkeypatch.setattr(sys, "stdin", io.StringIO(answer))
@@ -122,7 +122,7 @@ def test_nobody_is_forgotten_without_a_yes(
     assert call(capsys, "memory", "--path", str(file), "show", "Ada")[0] == 0
 
 
-def test_a_person_is_forgotten(file: Path, capsys: Capture, monkeypatch: pytest.MonkeyPatch) -> None:
+def test_forget_removes_a_person_after_a_yes(file: Path, capsys: Capture, monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr(sys, "stdin", io.StringIO("y\n"))
     code, out, _ = call(capsys, "memory", "--path", str(file), "forget", "Ada")
     assert code == 0 and out.endswith("forgot 2\n")
@@ -137,7 +137,7 @@ def test_a_person_is_forgotten(file: Path, capsys: Capture, monkeypatch: pytest.
 
 
 @pytest.mark.parametrize("answer", ["n\n", ""])
-def test_no_file_is_removed_without_a_yes(
+def test_reset_asks_first_and_removes_no_file_without_a_yes(
     file: Path, folder: Path, capsys: Capture, monkeypatch: pytest.MonkeyPatch, answer: str
 ) -> None:
     monkeypatch.setattr(sys, "stdin", io.StringIO(answer))
@@ -150,7 +150,7 @@ def test_no_file_is_removed_without_a_yes(
 def test_reset_removes_all_files_and_names_them(
     file: Path, folder: Path, capsys: Capture, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    file.unlink()  # the database alone, as after a crash
+    file.unlink()  # only the database file is missing, as after a crash
     for name in ("memory.lbug.wal", "memory.lbug.wal.orphaned-1", "memory.lbug.new.wal"):
         (folder / name).write_bytes(b"Ada")
     (folder / "memory.lbug.mine").touch()
@@ -164,7 +164,9 @@ def test_reset_removes_all_files_and_names_them(
     assert code == 1 and f"there is no memory at {file.resolve()}" in errors
 
 
-def test_files_of_a_deleted_memory_are_named(file: Path, folder: Path, capsys: Capture) -> None:
+def test_the_message_for_a_deleted_memory_names_the_files_that_remain(
+    file: Path, folder: Path, capsys: Capture
+) -> None:
     file.unlink()
     (folder / "memory.lbug.wal").write_bytes(b"Ada")
     code, _, errors = call(capsys, "memory", "--path", str(file), "list")
@@ -173,7 +175,7 @@ def test_files_of_a_deleted_memory_are_named(file: Path, folder: Path, capsys: C
     assert f"to remove them, run ravestate memory reset --path {file.resolve()}" in errors
 
 
-def test_only_the_user_may_read_an_export_even_in_place_of_an_older_file(
+def test_only_the_user_may_read_an_export_even_if_a_temporary_file_was_readable(
     file: Path, folder: Path, capsys: Capture
 ) -> None:
     left = folder / "all.json.new"
@@ -191,12 +193,12 @@ def test_reset_removes_a_broken_memory(file: Path, capsys: Capture) -> None:
     assert not file.exists()
 
 
-def test_reset_leaves_a_server_alone(capsys: Capture) -> None:
+def test_reset_refuses_a_memory_on_a_server(capsys: Capture) -> None:
     code, _, errors = call(capsys, "memory", "--set", "ontology.url=bolt://localhost:1", "reset", "-y")
     assert code == 2 and "this memory is on a server" in errors
 
 
-def test_the_settings_of_an_agent_are_used(file: Path, folder: Path, capsys: Capture) -> None:
+def test_memory_uses_the_settings_of_an_agent_file(file: Path, folder: Path, capsys: Capture) -> None:
     write(folder / "types.yaml", "Boat: {is: Thing}")
     write(
         folder / "agent.yaml",
@@ -216,7 +218,7 @@ def test_the_settings_of_an_agent_are_used(file: Path, folder: Path, capsys: Cap
     assert "also has Boat, but no file declares these types" in errors
 
 
-def test_the_options_for_the_place_may_also_follow_the_action(file: Path, folder: Path, capsys: Capture) -> None:
+def test_the_options_for_the_file_may_also_follow_the_action(file: Path, folder: Path, capsys: Capture) -> None:
     before = call(capsys, "memory", "--path", str(file), "list")
     assert before[0] == 0
     assert call(capsys, "memory", "list", "--path", str(file)) == before
@@ -228,14 +230,16 @@ def test_the_options_for_the_place_may_also_follow_the_action(file: Path, folder
         assert "there is no memory yet" not in call(capsys, "memory", *action, "--path", str(file))[2]
 
 
-def test_settings_of_other_modules_are_refused(file: Path, capsys: Capture) -> None:
+def test_settings_of_other_modules_and_unknown_settings_are_refused(file: Path, capsys: Capture) -> None:
     code, out, errors = call(capsys, "memory", "--path", str(file), "--set", "foo.pth=x", "list")
     assert (code, out) == (2, "") and "--set foo.pth=x: module 'foo' is not part of this agent" in errors
     code, _, errors = call(capsys, "memory", "list", "--set", "ontology.pth=x")
     assert code == 2 and "no such setting; did you mean 'path'? (it has: types, path, " in errors
 
 
-def test_the_default_place_is_the_users(folder: Path, capsys: Capture, monkeypatch: pytest.MonkeyPatch) -> None:
+def test_the_default_file_is_in_the_data_folder_of_the_user(
+    folder: Path, capsys: Capture, monkeypatch: pytest.MonkeyPatch
+) -> None:
     monkeypatch.setenv("XDG_DATA_HOME", str(folder))
     monkeypatch.setattr(sys, "platform", "linux")
     code, _, errors = call(capsys, "memory", "list")

@@ -1,4 +1,4 @@
-"""``ravestate model``: the list, a download from a stand-in of the hub, and the removal."""
+"""``ravestate model`` lists, fetches and removes models. A stand-in for the model hub serves the downloads."""
 
 import json
 from collections.abc import Iterator
@@ -18,7 +18,7 @@ Capture = pytest.CaptureFixture[str]
 
 @pytest.fixture(autouse=True)
 def place(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
-    """A folder for models, a catalogue with one small model, and a machine without others."""
+    """An empty folder for models. The catalogue has one small model, and the machine has no other."""
     folder = tmp_path / "models"
     monkeypatch.setattr(model_store, "folder", lambda: folder)
     monkeypatch.setattr(model_store, "catalogue", lambda: {MODEL.name: MODEL})
@@ -56,7 +56,7 @@ def test_a_model_is_fetched_listed_used_and_removed(hub: Hub, place: Path, capsy
     assert (code, errors) == (1, f"ravestate model: tiny is not installed in {place}\n")
 
 
-def test_an_interruption_keeps_the_part_and_says_so(
+def test_an_interrupted_download_is_kept_and_the_message_says_how_to_continue(
     hub: Hub, place: Path, capsys: Capture, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     real = file_download.http_get
@@ -82,7 +82,7 @@ def test_an_unfinished_download_can_be_removed(place: Path, capsys: Capture) -> 
     assert call(capsys, "model", "remove", "tiny") == (0, f"removed {MODEL.part}\n", "")
 
 
-def test_failures_are_messages(hub: Hub, capsys: Capture) -> None:
+def test_failures_and_wrong_use_give_messages(hub: Hub, capsys: Capture) -> None:
     hub.script = [404]
     code, _, errors = call(capsys, "model", "get")
     assert code == 1 and "ravestate model: http://127.0.0.1:" in errors and "take another model" in errors
@@ -91,7 +91,7 @@ def test_failures_are_messages(hub: Hub, capsys: Capture) -> None:
     assert call(capsys, "model")[0] == 2
 
 
-def test_the_list_has_what_else_this_machine_offers(
+def test_the_list_has_other_models_and_servers_on_this_machine(
     tmp_path: Path, capsys: Capture, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     class Server(Quiet):

@@ -1,4 +1,4 @@
-"""``ravestate new``: a project that runs, with tests that pass, and the names that it refuses."""
+"""``ravestate new``: the new project runs and its tests pass; wrong names are refused."""
 
 import os
 import shlex
@@ -20,11 +20,11 @@ def files(folder: Path) -> set[str]:
 
 @pytest.fixture(autouse=True)
 def activated(monkeypatch: pytest.MonkeyPatch) -> None:
-    """Put the commands of this environment on the shell's path."""
+    """Put the commands of this environment on ``PATH``."""
     monkeypatch.setenv("PATH", f"{Path(sys.executable).parent}{os.pathsep}{os.environ['PATH']}")
 
 
-def test_the_tests_of_a_new_project_pass(folder: Path, capsys: Capture) -> None:
+def test_a_new_project_runs_and_its_tests_pass(folder: Path, capsys: Capture) -> None:
     code, out, errors = call(capsys, "new", "my-agent")
     assert (code, errors) == (0, "")
     made = folder / "my-agent"
@@ -61,18 +61,20 @@ def test_the_tests_of_a_new_project_pass(folder: Path, capsys: Capture) -> None:
     assert call(capsys, "check", "my-agent/agent.yaml")[0] == 0
 
 
-def test_the_printed_next_steps_can_be_typed(folder: Path, capsys: Capture, monkeypatch: pytest.MonkeyPatch) -> None:
+def test_the_printed_next_steps_name_the_commands_of_this_environment(
+    folder: Path, capsys: Capture, monkeypatch: pytest.MonkeyPatch
+) -> None:
     assert "\n  cd '1 bad/my-agent'\n" in call(capsys, "new", "1 bad/my-agent")[1]
     monkeypatch.setenv("PATH", str(folder))
     for name in ("nobodys", "others"):
         for line in call(capsys, "new", name)[1].splitlines()[-3:]:
             command = Path(shlex.split(line)[0])
             assert command.parent == Path(sys.executable).parent and command.exists()
-        for command in ("python", "ravestate"):  # of another installation
+        for command in ("python", "ravestate"):  # commands of another installation
             (folder / command).touch(mode=0o755)
 
 
-def test_a_nested_folder_and_an_empty_one_are_accepted(folder: Path, capsys: Capture) -> None:
+def test_a_new_nested_folder_and_an_existing_empty_folder_are_accepted(folder: Path, capsys: Capture) -> None:
     (folder / "empty").mkdir()
     assert call(capsys, "new", "empty")[0] == 0
     assert call(capsys, "new", "some/where/Robot7")[0] == 0
@@ -105,20 +107,20 @@ def test_existing_files_are_not_overwritten(folder: Path, capsys: Capture) -> No
     assert files(folder) == {"taken/precious.txt", "file"}
 
 
-def test_a_folder_that_cannot_be_written_has_a_message(folder: Path, capsys: Capture) -> None:
+def test_a_folder_that_cannot_be_written_gives_a_message(folder: Path, capsys: Capture) -> None:
     (folder / "file").write_text("", encoding="utf-8")
     code, _, errors = call(capsys, "new", "file/agent")
     assert code == 2 and errors.startswith("ravestate new: cannot write file/agent/README.md: ")
 
 
 @pytest.mark.parametrize("name", ["class", "import"])
-def test_a_python_keyword_is_refused_with_this_reason(name: str, folder: Path, capsys: Capture) -> None:
+def test_a_python_keyword_is_refused_as_a_name(name: str, folder: Path, capsys: Capture) -> None:
     code, _, errors = call(capsys, "new", name)
     assert code == 2 and f"{name!r} is a Python keyword" in errors
     assert list(folder.iterdir()) == []
 
 
-def test_a_name_that_yaml_reads_as_a_truth_value_works(folder: Path, capsys: Capture) -> None:
+def test_a_name_that_yaml_reads_as_a_boolean_is_accepted(folder: Path, capsys: Capture) -> None:
     assert call(capsys, "new", "yes")[0] == 0
     text = (folder / "yes" / "agent.yaml").read_text(encoding="utf-8")
     assert "yes" in load_yaml(text, "agent.yaml")["settings"]

@@ -12,7 +12,7 @@ from cli.examples import call
 Capture = pytest.CaptureFixture[str]
 
 
-def test_the_analysis_is_a_table_for_people(capsys: Capture) -> None:
+def test_the_analysis_is_printed_as_a_table(capsys: Capture) -> None:
     code, out, errors = call(capsys, "nlp", "Where do you live? I live in Berlin.")
     assert (code, errors) == (0, "")
     lines = out.splitlines()
@@ -35,7 +35,7 @@ def test_the_analysis_is_a_table_for_people(capsys: Capture) -> None:
     ("text", "shown"),
     [("yes", "yes, surely"), ("probably not", "no, weakly"), ("no idea", "unsure"), ("I swim", "-")],
 )
-def test_answers_are_shown_in_words(text: str, shown: str, capsys: Capture) -> None:
+def test_an_answer_of_the_user_is_described_in_words(text: str, shown: str, capsys: Capture) -> None:
     _, out, _ = call(capsys, "nlp", text)
     assert f"yes/no    {shown}\n" in out
 
@@ -63,7 +63,7 @@ def test_the_scores_of_the_intents_of_a_module_are_shown(capsys: Capture, tmp_pa
     assert list(scores) == ["cafe:hours", "cafe:table"] and scores["cafe:hours"] > 0.5 > scores["cafe:table"]
 
 
-def test_words_need_no_quotes(capsys: Capture) -> None:
+def test_a_text_needs_no_quotation_marks(capsys: Capture) -> None:
     code, out, _ = call(capsys, "nlp", "who", "are", "you")
     assert code == 0 and "(you, be, PERSON)" in out
 
@@ -80,7 +80,7 @@ def test_each_line_of_standard_input_becomes_a_line_of_json(capsys: Capture, mon
     assert [token["text"] for token in second["tokens"]] == ["who", "wrote", "Hamlet"]
 
 
-def test_the_agents_name_can_be_given(capsys: Capture) -> None:
+def test_an_option_gives_the_agents_name(capsys: Capture) -> None:
     _, out, _ = call(capsys, "nlp", "--agent-name", "Lina", "lina is here")
     assert "signals   about_agent\n" in out
 
@@ -90,7 +90,7 @@ def test_control_codes_do_not_reach_the_terminal(capsys: Capture) -> None:
     assert code == 0 and "\x1b" not in out and "red" in out
 
 
-def test_an_unknown_pipeline_has_a_message(capsys: Capture) -> None:
+def test_an_unknown_pipeline_gives_a_message(capsys: Capture) -> None:
     code, out, errors = call(capsys, "nlp", "--pipeline", "nonsense", "hello")
     assert (code, out) == (1, "") and "there is no spaCy pipeline 'nonsense'" in errors
 

@@ -1,4 +1,4 @@
-"""``ravestate robot``: the stand-in, alone or with an agent, and beside a page of webio."""
+"""``ravestate robot`` serves a stand-in for a robot, together with an agent and its chat page."""
 
 import os
 import signal
@@ -23,7 +23,7 @@ async def answer(ctx):
 """
 
 
-def test_the_robots_page_opens_beside_that_of_webio_and_ends_cleanly(tmp_path: Path) -> None:
+def test_the_robots_page_and_the_chat_page_are_served_and_end_cleanly(tmp_path: Path) -> None:
     (tmp_path / "parrot.py").write_text(PARROT)
     line = [sys.executable, "-m", "ravestate", "robot", str(tmp_path / "parrot.py"), "webio", "--on", "bus"]
     line += ["--bus", "127.0.0.1:0", "--port", "0", "--set", "webio.port=0"]

@@ -1,4 +1,7 @@
-"""``ravestate ros``: check, topics, echo. On the built-in bus; tests/modules/platform/ros has the real networks."""
+"""``ravestate ros check``, ``topics`` and ``echo`` on the built-in bus.
+
+The tests in ``tests/modules/platform/ros`` use real networks.
+"""
 
 import asyncio
 import json
@@ -28,7 +31,7 @@ own = ros2.publisher(module, "own", topic="/own", type="own_msgs/Thing")
 
 @pytest.fixture(scope="module")
 def bus() -> Iterator[str]:
-    """Serve a bus, with a node that publishes /chat and offers /lamp, in a thread."""
+    """Run a bus in a thread, with a node that publishes the topic /chat and offers the service /lamp."""
     started, address, stop = threading.Event(), [""], threading.Event()
 
     async def serve(_: Any) -> dict[str, Any]:
@@ -56,7 +59,7 @@ def bus() -> Iterator[str]:
 
 @pytest.fixture(autouse=True)
 def one_look(monkeypatch: pytest.MonkeyPatch) -> None:
-    """Look only once, because the bus knows its nodes at once."""
+    """Let the commands look for nodes only once. On the bus, discovery takes no time."""
     monkeypatch.setattr("ravestate.cli.ros.LOOKS", 1)
     monkeypatch.setattr("ravestate.modules.platform.ros.checking.LOOKS", 1)
 
@@ -65,7 +68,7 @@ def ros(bus: str, *arguments: str) -> int:
     return main(["ros", *arguments, "--set", "ros2.backend=bus", "--set", f"ros2.bus={bus}"])
 
 
-def test_check_says_what_is_bound_and_how_to_fix_it(
+def test_check_lists_the_bound_slots_and_says_how_to_fix_faults(
     bus: str, tmp_path: Path, capsys: pytest.CaptureFixture[str]
 ) -> None:
     (tmp_path / "agent.py").write_text(AGENT)
@@ -104,7 +107,9 @@ def test_echo_prints_messages(bus: str, capsys: pytest.CaptureFixture[str]) -> N
     assert json.loads(capsys.readouterr().out) == {"data": "hello"}
 
 
-def test_an_unknown_topic_names_the_nearest(bus: str, capsys: pytest.CaptureFixture[str]) -> None:
+def test_the_message_for_an_unknown_topic_suggests_the_nearest_name(
+    bus: str, capsys: pytest.CaptureFixture[str]
+) -> None:
     assert ros(bus, "echo", "/chatt", "--version", "2") == 1
     assert "there is no topic /chatt; did you mean '/chat'?" in capsys.readouterr().err
 

@@ -1,4 +1,4 @@
-"""The parameter server of ROS 1, a real one."""
+"""Settings from a real parameter server of ROS 1."""
 
 import xmlrpc.client
 from collections.abc import Iterator
@@ -18,9 +18,9 @@ def server(monkeypatch: pytest.MonkeyPatch) -> Iterator[xmlrpc.client.ServerProx
     network.stop()
 
 
-def test_the_private_parameters_of_a_node_of_roslaunch_are_settings(server: xmlrpc.client.ServerProxy) -> None:
+def test_the_private_parameters_of_a_node_become_settings(server: xmlrpc.client.ServerProxy) -> None:
     server.setParam("/roslaunch", "/robot/guide/idle/bored_after", 9.0)
-    server.setParam("/roslaunch", "/robot/guide/rate", 3)  # of no module
+    server.setParam("/roslaunch", "/robot/guide/rate", 3)  # no module has this name
     server.setParam("/roslaunch", "/use_sim_time", True)
     assert translate(["run", "guide.py", "__name:=guide", "__ns:=/robot", "__log:=/tmp/log"]) == [
         "run", "guide.py", "--set", "idle.bored_after=9.0", "--set", "ros1.use_sim_time=true", "--set", "ros1.node=guide",
@@ -31,6 +31,6 @@ def test_the_private_parameters_of_a_node_of_roslaunch_are_settings(server: xmlr
     ]  # fmt: skip
 
 
-def test_without_a_master_there_are_no_parameters(monkeypatch: pytest.MonkeyPatch) -> None:
+def test_without_a_ros_master_no_parameters_become_settings(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setenv("ROS_MASTER_URI", "http://127.0.0.1:1")
     assert translate(["run", "__name:=guide"]) == ["run", "--set", "ros1.node=guide"]

@@ -61,12 +61,12 @@ def test_ctrl_c_ends_the_agent_cleanly(folder: Path) -> None:
     assert (process.returncode, out, complaints(errors)) == (0, "farewell\n", "")
 
 
-def test_an_unfit_setting_is_wrong_use(capsys: pytest.CaptureFixture[str]) -> None:
+def test_a_setting_of_the_wrong_type_gives_exit_code_2(capsys: pytest.CaptureFixture[str]) -> None:
     code, _, errors = call(capsys, "run", "idle", "--set", "idle.bored_after=abc")
     assert code == 2 and "setting idle.bored_after = 'abc': " in errors
 
 
-def test_a_spoken_conversation_has_a_transcript_unless_a_platform_shows_it(
+def test_a_spoken_conversation_has_a_transcript_unless_another_platform_shows_the_text(
     monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
 ) -> None:
     ran: list[list[str]] = []
@@ -79,7 +79,7 @@ def test_a_spoken_conversation_has_a_transcript_unless_a_platform_shows_it(
 def test_a_platform_without_a_user_is_reported(
     monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
 ) -> None:
-    """A platform that serves all users leaves none for the console."""
+    """If a platform serves all users, the console and the voice have no user."""
     monkeypatch.setattr("ravestate.runtime.run.run", lambda *_, **__: None)
     code, _, errors = call(capsys, "run", "telegramio", "conio", "voiceio")
     assert code == 0 and "conio and voiceio will have no user: telegramio serves all users" in errors

@@ -1,4 +1,4 @@
-"""``ravestate vision`` tells whose faces are in pictures, and learns and forgets faces."""
+"""``ravestate vision`` names the people in pictures, learns faces, and checks the worker and the camera."""
 
 import re
 from collections.abc import Iterator
@@ -15,7 +15,7 @@ LINE = re.compile(r"(\S.*?) +(-|\d\.\d{3})  -?\d+,-?\d+,\d+,\d+  (.+)")
 
 @pytest.fixture(scope="module", autouse=True)
 def worker() -> Iterator[None]:
-    """Keep one worker for all commands. Otherwise each command would start one."""
+    """Keep one vision worker for all commands. Otherwise each command would start its own."""
     eye()
     yield
     eye().close()
@@ -23,12 +23,14 @@ def worker() -> Iterator[None]:
 
 
 def rows(text: str) -> list[tuple[str, str, str]]:
-    """Return the name, the distance and the file in each line."""
+    """Return the name, the distance and the file's stem from each line."""
     found = [LINE.fullmatch(line) for line in text.splitlines()]
     return [(hit[1], hit[2], Path(hit[3]).stem) for hit in found if hit is not None]
 
 
-def test_the_commands_who_learn_and_forget_work_together(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+def test_who_names_a_face_after_learn_and_no_longer_after_forget(
+    tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
     memory = ("--path", str(tmp_path / "memory.lbug"))
     code, out, errors = call(capsys, "vision", "who", *memory, str(photo("obama")))
     assert code == 0 and rows(out) == [("unknown", "-", "obama")] and "there is no memory in" in errors
@@ -40,8 +42,9 @@ def test_the_commands_who_learn_and_forget_work_together(tmp_path: Path, capsys:
     assert [name for name, _, _ in rows(out)] == ["Barack", *["unknown"] * 7]
     assert [float(distance) <= 0.45 for _, distance, _ in rows(out)] == [True, *[False] * 7]
     code, out, _ = call(capsys, "vision", "learn", *memory, "Barack", str(photo("obama")))
-    assert (code, out) == (0, "learnt 0 views of Barack\n")  # the picture tells nothing new
-    code, _, errors = call(capsys, "vision", "learn", *memory, "Joe", str(photo("obama3")))  # two names for one face
+    assert (code, out) == (0, "learnt 0 views of Barack\n")  # the view is known already
+    # Memory knows this face under another name.
+    code, _, errors = call(capsys, "vision", "learn", *memory, "Joe", str(photo("obama3")))
     assert code == 1 and "memory knows this face as Barack" in errors and "memory forget" in errors
     code, out, _ = call(capsys, "memory", *memory, "forget", "--yes", "Barack")
     assert (code, out) == (0, "forgot 3\n")
@@ -49,7 +52,7 @@ def test_the_commands_who_learn_and_forget_work_together(tmp_path: Path, capsys:
     assert rows(out) == [("unknown", "-", "obama")]
 
 
-def test_files_that_are_no_pictures_are_reported_and_the_others_are_read(
+def test_files_that_are_not_pictures_are_reported_and_other_files_are_read(
     tmp_path: Path, capsys: pytest.CaptureFixture[str]
 ) -> None:
     bad = tmp_path / "bad.jpg"
@@ -66,7 +69,7 @@ def test_files_that_are_no_pictures_are_reported_and_the_others_are_read(
     ("files", "why"),
     [(("six",), "has 6 faces"), (("obama", "biden"), "shows a different person")],
 )
-def test_learn_takes_one_face_of_one_person(
+def test_learn_refuses_a_picture_of_several_people_and_pictures_of_different_people(
     tmp_path: Path, capsys: pytest.CaptureFixture[str], files: tuple[str, ...], why: str
 ) -> None:
     memory = tmp_path / "memory.lbug"
@@ -74,12 +77,12 @@ def test_learn_takes_one_face_of_one_person(
     assert code == 2 and why in errors and not memory.exists()
 
 
-def test_check_names_the_worker_and_the_camera(capsys: pytest.CaptureFixture[str]) -> None:
+def test_check_reports_the_worker_and_the_camera(capsys: pytest.CaptureFixture[str]) -> None:
     code, out, _ = call(capsys, "vision", "check", "--set", "visionio.source=/dev/video9")
     assert code == 0 and "finds and recognises faces" in out and "/dev/video9" in out
 
 
-def test_a_missing_part_is_named_with_the_remedy(
+def test_the_message_for_a_missing_part_says_how_to_install_it(
     capsys: pytest.CaptureFixture[str], monkeypatch: pytest.MonkeyPatch, tmp_path: Path
 ) -> None:
     monkeypatch.setattr(places.sys, "prefix", str(tmp_path / "env"))

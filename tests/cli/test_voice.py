@@ -70,7 +70,7 @@ def test_a_file_that_cannot_be_read_does_not_stop_the_others(folder: Path, capsy
     assert code == 1 and "Traceback" not in errors
 
 
-def test_say_writes_a_file(folder: Path, capsys: pytest.CaptureFixture[str]) -> None:
+def test_say_writes_speech_to_a_file(folder: Path, capsys: pytest.CaptureFixture[str]) -> None:
     assert call(capsys, "voice", "say", "Good morning to everyone.", "-o", "out.wav", *TINY) == (0, "", "")
     with wave.open("out.wav") as file:
         assert file.getframerate() == 24000 and 0.8 < file.getnframes() / 24000 < 4
@@ -112,7 +112,7 @@ def test_a_recording_is_never_overwritten(folder: Path, capsys: pytest.CaptureFi
     assert code == 2 and "would be overwritten" in errors and file.read_bytes() == before
 
 
-def test_files_of_another_kind_are_refused_with_the_remedy(folder: Path, capsys: pytest.CaptureFixture[str]) -> None:
+def test_files_that_are_not_wav_files_are_refused_with_advice(folder: Path, capsys: pytest.CaptureFixture[str]) -> None:
     wav(folder / "rec.sound", noise(0.1, 500))
     code, _, errors = call(capsys, "voice", "talk", "rec.sound", "-o", "out.wav", "rawio")
     assert code == 2 and "rec.sound: name a recording that ends in .wav" in errors
@@ -122,8 +122,8 @@ def test_files_of_another_kind_are_refused_with_the_remedy(folder: Path, capsys:
     assert code == 1 and "is a folder" in errors
 
 
-def test_talk_leaves_other_platforms_out(folder: Path, capsys: pytest.CaptureFixture[str]) -> None:
-    """A console whose input is no terminal would end the agent at once."""
+def test_talk_leaves_out_other_platforms(folder: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    """Here the console would end the agent at once, because its input is not a terminal."""
     (folder / "echo.py").write_text(STORYTELLER)
     (folder / "agent.yaml").write_text("modules: [conio, ./echo.py]\nsettings: {conio: {plain: true}}\n")
     wav(folder / "in.wav", track((0.5, "What do you think about the weather?"), length=3.0))
@@ -133,8 +133,7 @@ def test_talk_leaves_other_platforms_out(folder: Path, capsys: pytest.CaptureFix
 
 
 def test_ctrl_c_ends_a_conversation_cleanly(folder: Path) -> None:
-    """A thread that waits for input stops the virtual clock. Otherwise the clock would reach the end before the
-    signal."""
+    """One rule waits for input in a thread, and so holds the virtual clock back until the signal arrives."""
     (folder / "slow.py").write_text(
         STORYTELLER
         + """

@@ -1,4 +1,4 @@
-"""Diagrams for tests: the paper's figures as rules, and arbitrary diagrams from Hypothesis."""
+"""Rules and diagrams for tests: the paper's examples, large policies, and arbitrary diagrams from Hypothesis."""
 
 from __future__ import annotations
 
@@ -31,7 +31,7 @@ def rule(module: Module, name: str, when: Condition, **options: Any) -> Rule[Any
 
 
 def question_answering() -> Module:
-    """The paper's example of exclusive and independent rules."""
+    """The paper's example of rules that exclude each other and rules that are independent."""
     module = Module("qa")
     said, answer, face = module.slot("input"), module.slot("output"), module.slot("face")
     question = module.signal("question")
@@ -43,7 +43,7 @@ def question_answering() -> Module:
 
 
 def games() -> Module:
-    """The worked example of L9."""
+    """The worked example of law L9."""
     module = Module("demo")
     said, answer, face = module.slot("input"), module.slot("output"), module.slot("face")
     question, about, play = (module.signal(name) for name in ("question", "about_agent", "games"))
@@ -59,7 +59,7 @@ def games() -> Module:
 
 
 def prompting() -> Module:
-    """The paper's loop through detached emission."""
+    """The paper's loop of prompts, in which rules emit a detached signal."""
     module = Module("prompt")
     said, answer = module.slot("input"), module.slot("output")
     bored, prompted = module.signal("bored"), module.signal("prompted")
@@ -70,7 +70,7 @@ def prompting() -> Module:
 
 
 def many_rules(count: int) -> Module:
-    """Many rules with hubs, chains, conjunctions, alternatives, ages and loops; the same in each call."""
+    """Many rules with hubs, chains, conjunctions, alternatives, ages and loops. Each call declares the same rules."""
     module = Module("many")
     said, answer, memory = module.slot("input"), module.slot("output"), module.slot("memory")
     heard: list[Condition] = [said.changed, memory.changed]
@@ -91,7 +91,7 @@ def many_rules(count: int) -> Module:
 
 
 def star(points: int, pairs: bool) -> Diagram:
-    """One slot that all rules read. They write one other slot, or each emits its own signal."""
+    """A slot that all rules read. All rules write a second slot; with `pairs`, each rule emits its own signal instead."""
     nodes = [Node("in", "slot", "input", "rawio"), Node("out", "slot", "intent", "verbaliser")]
     edges: list[Edge] = []
     for i in range(points):
@@ -134,7 +134,7 @@ names = st.one_of(
 
 @st.composite
 def diagrams(draw: st.DrawFn, most_nodes: int = 14, most_edges: int = 30) -> Diagram:
-    """Any nodes with any edges."""
+    """Arbitrary nodes with arbitrary edges between them."""
     kinds = draw(st.lists(st.sampled_from(NODE_KINDS), max_size=most_nodes))
     nodes = tuple(Node(f"n{i}", kind, draw(names), draw(names), draw(names)) for i, kind in enumerate(kinds))
     edges: list[Edge] = []

@@ -32,7 +32,9 @@ def graphs(draw: st.DrawFn) -> tuple[int, list[Arc]]:
 
 
 @given(graphs(), st.integers(1, 8))
-def test_no_layer_exceeds_the_bound_and_each_arc_has_its_length(graph: tuple[int, list[Arc]], most: int) -> None:
+def test_no_layer_exceeds_the_bound_and_each_arc_spans_its_minimum_length(
+    graph: tuple[int, list[Arc]], most: int
+) -> None:
     count, arcs = graph
     found = bounded_layers(network_simplex(count, arcs), arcs, most)
     assert max(Counter(found).values()) <= most
@@ -41,7 +43,7 @@ def test_no_layer_exceeds_the_bound_and_each_arc_has_its_length(graph: tuple[int
         assert found[v] - found[u] >= length
 
 
-def test_a_chain_continues_before_another_chain_begins() -> None:
+def test_a_chain_is_completed_before_another_chain_begins() -> None:
     arcs = [(0, head, 1, 1) for head in (1, 3, 5, 7)] + [(head, head + 1, 1, 1) for head in (1, 3, 5, 7)]
     found = bounded_layers(network_simplex(9, arcs), arcs, 2)
     assert [found[head] for head in (1, 3, 5, 7)] == [1, 1, 3, 3]
@@ -52,12 +54,12 @@ def test_a_picture_that_is_wide_enough_keeps_its_layers() -> None:
     arcs = [(0, v, 1, 1) for v in range(1, 40)]
     ranks = network_simplex(40, arcs)
     assert fit_to_screen(ranks, arcs, lambda _: (1000.0, 800.0)) == ranks
-    assert fit_to_screen(ranks, arcs, lambda _: (100.0, 700.0)) == ranks  # not wide, but no higher than a screen
-    assert fit_to_screen(ranks, arcs, lambda _: (100.0, 2000.0)) == ranks  # a bound does not help
+    assert fit_to_screen(ranks, arcs, lambda _: (100.0, 700.0)) == ranks  # narrow, but no higher than a screen
+    assert fit_to_screen(ranks, arcs, lambda _: (100.0, 2000.0)) == ranks  # too high, but a bound does not help
 
 
 @pytest.mark.parametrize("points", [20, 30, 60, 120])
-@pytest.mark.parametrize("pairs", [False, True], ids=["ends", "chains"])
+@pytest.mark.parametrize("pairs", [False, True], ids=["one-slot", "own-signals"])
 def test_the_neighbours_of_a_hub_fill_a_landscape_screen(points: int, pairs: bool) -> None:
     diagram = star(points, pairs)
     layout = laid_out(diagram)
@@ -66,14 +68,14 @@ def test_the_neighbours_of_a_hub_fill_a_landscape_screen(points: int, pairs: boo
 
 
 @pytest.mark.parametrize("module", [question_answering(), games(), prompting(), many_rules(120)], ids=repr)
-def test_the_examples_are_at_least_as_wide_as_high(module: Module) -> None:
+def test_the_examples_are_at_least_as_wide_as_they_are_high(module: Module) -> None:
     layout = laid_out(build(module.rules))
     assert layout.width >= layout.height
 
 
 @st.composite
 def tangled_stars(draw: st.DrawFn) -> Diagram:
-    """A hub with neighbours, and a few edges in both directions, some of them with labels."""
+    """A hub with neighbours, and a few more edges in any direction. Some of these have labels."""
     diagram = star(draw(st.integers(8, 20)), draw(st.booleans()))
     ids = st.sampled_from([node.id for node in diagram.nodes])
     edges = [
@@ -99,7 +101,7 @@ def test_with_bounded_layers_lines_run_from_left_to_right() -> None:
         assert source.x + source.width < target.x
 
 
-def test_the_picture_does_not_depend_on_the_order_of_hashes() -> None:
+def test_the_layout_does_not_depend_on_the_hash_seed() -> None:
     program = (
         "from draw.examples import star\nfrom draw.test_layout import laid_out\nprint(laid_out(star(40, pairs=True)))"
     )

@@ -25,7 +25,7 @@ def test_a_single_constraint_leads_directly_to_its_rule() -> None:
     }
 
 
-def test_a_conjunction_meets_in_one_node() -> None:
+def test_the_constraints_of_a_conjunction_meet_in_one_node() -> None:
     found = build(games().rules)
     assert Edge("signal demo:question", "and demo:OfferGames 0", "condition") in found.edges
     assert Edge("signal demo:games", "and demo:OfferGames 0", "condition") in found.edges
@@ -34,7 +34,7 @@ def test_a_conjunction_meets_in_one_node() -> None:
     assert [node.kind for node in found.nodes].count("or") == 0
 
 
-def test_alternatives_meet_in_a_disjunction() -> None:
+def test_alternatives_meet_in_a_disjunction_node() -> None:
     module = Module("m")
     a, b, c = (module.signal(name) for name in "abc")
     rule(module, "r", a & b | c)
@@ -47,12 +47,12 @@ def test_alternatives_meet_in_a_disjunction() -> None:
     }
 
 
-def test_detached_rules_emit_detached() -> None:
+def test_a_detached_rule_has_a_detached_edge_to_its_signal() -> None:
     kinds = {edge.kind for edge in build(prompting().rules).edges if edge.target == "signal prompt:prompted"}
     assert kinds == {"emits_detached"}
 
 
-def test_a_slot_emits_only_signals_with_a_listener() -> None:
+def test_a_slot_has_only_the_signals_that_a_rule_uses() -> None:
     module = Module("m")
     lit = module.flag("lit")
     rule(module, "r", lit.true, writes=lit)
@@ -60,7 +60,7 @@ def test_a_slot_emits_only_signals_with_a_listener() -> None:
     assert "m:lit:true" in names and "m:lit:changed" not in names and "m:lit:false" not in names
 
 
-def test_constraints_are_annotated() -> None:
+def test_the_edge_of_a_constraint_has_its_ages_and_predicates_as_a_label() -> None:
     module = Module("m")
     a, mood = module.signal("a", str), module.slot("mood")
     found = {
@@ -92,7 +92,7 @@ def test_constraints_are_annotated() -> None:
     }
 
 
-def test_detached_constraints_and_interruptions_have_their_own_lines() -> None:
+def test_detached_constraints_and_interruptions_have_detached_edges() -> None:
     module = Module("m")
     a, b = module.signal("a"), module.signal("b")
     rule(module, "r", a.detached() & b, until=b.min_age(1.0).max_age(None))
@@ -101,7 +101,7 @@ def test_detached_constraints_and_interruptions_have_their_own_lines() -> None:
     assert ("signal m:b", "rule m:r", "condition_detached", "until ≥ 1 s") in found
 
 
-def test_options_are_noted_at_the_rule() -> None:
+def test_the_note_of_a_rule_lists_its_options() -> None:
     module = Module("m")
     a = module.signal("a")
     rule(module, "r", a, weight=1.2, cooldown=30.0, detached=True, background=True)

@@ -13,7 +13,7 @@ def arranged(draw: st.DrawFn) -> LayeredGraph:
     count = draw(st.integers(1, 12))
     ranks = sorted(draw(st.lists(st.integers(0, 4), min_size=count, max_size=count)))
     names = {rank: i for i, rank in enumerate(sorted(set(ranks)))}
-    ranks = [names[rank] for rank in ranks]  # no empty layers
+    ranks = [names[rank] for rank in ranks]  # number the layers without gaps
     ends = draw(st.lists(st.tuples(st.integers(0, count - 1), st.integers(0, count - 1)), max_size=24))
     kinds = st.sampled_from(("writes", "reads", "condition"))
     links = [Link(u, v, draw(kinds), draw(st.booleans()), None) for u, v in ends if ranks[u] < ranks[v]]
@@ -25,7 +25,7 @@ def arranged(draw: st.DrawFn) -> LayeredGraph:
 
 
 @given(graph=arranged(), room=st.sampled_from((None, 200.0)))
-def test_neighbours_of_a_layer_keep_their_distance(graph: LayeredGraph, room: float | None) -> None:
+def test_neighbours_in_a_layer_keep_their_minimum_distance(graph: LayeredGraph, room: float | None) -> None:
     middle = assign_coordinates(graph, room)
     for layer in graph.order:
         for u, v in pairwise(layer):

@@ -8,7 +8,7 @@ pairs = st.lists(st.tuples(st.integers(0, 5), st.integers(6, 11)), max_size=20)
 
 
 @given(pairs)
-def test_the_count_of_crossings_equals_a_simple_count(segments: list[tuple[int, int]]) -> None:
+def test_count_crossings_agrees_with_a_comparison_of_all_pairs(segments: list[tuple[int, int]]) -> None:
     after: list[list[int]] = [[] for _ in range(12)]
     for u, v in segments:
         after[u].append(v)
@@ -27,7 +27,7 @@ def test_minimising_never_adds_crossings_and_loses_no_vertex(segments: list[tupl
     assert [sorted(layer) for layer in graph.order] == [list(range(6)), list(range(6, 12))]
 
 
-def test_a_simple_swap_is_undone() -> None:
+def test_two_lines_that_cross_are_untangled() -> None:
     links = [Link(0, 3, "writes", False, None), Link(1, 2, "writes", False, None)]
     graph = proper_layering([0, 0, 1, 1], [(10.0, 10.0)] * 4, links)
     minimise_crossings(graph)

@@ -11,7 +11,7 @@ TOKEN = re.compile(r'"(?:[^"\\\n]|\\.)*"|//[^\n]*|[A-Za-z0-9_.]+|->|[\[\]{}=,;]|
 
 
 @given(diagrams())
-def test_any_name_gives_whole_tokens(diagram: Diagram) -> None:
+def test_any_names_give_a_text_of_valid_tokens(diagram: Diagram) -> None:
     text = dot(diagram)
     at = 0
     while at < len(text):
@@ -26,21 +26,21 @@ def test_quotes_backslashes_and_entities_are_escaped() -> None:
     assert 'label="m\ufffd\\nsay \\"\\\\N\\" &amp;lt;"' in text
 
 
-def test_each_kind_looks_different() -> None:
+def test_each_kind_of_edge_looks_different() -> None:
     nodes = (Node("a", "slot", "a"), Node("b", "rule", "b"))
     kinds = ("reads", "writes", "emits", "emits_detached", "condition", "condition_detached")
     looks = {dot(Diagram(nodes, (Edge("a", "b", kind),))).splitlines()[-2] for kind in kinds}
     assert len(looks) == len(kinds)
 
 
-def test_a_loop_has_its_lines_and_labels() -> None:
+def test_a_detached_loop_has_dotted_lines_and_labels() -> None:
     text = dot(build(prompting().rules))
     assert 'digraph "Signal-Rule-Slot diagram" {' in text
     assert "style=dotted, penwidth=2, arrowhead=empty" in text
     assert 'label=" ≥ 10 s "' in text
 
 
-def test_the_comments_explain_only_the_kinds_in_the_picture() -> None:
+def test_the_comments_explain_only_kinds_that_the_diagram_has() -> None:
     text = dot(Diagram((Node("a", "signal", "a"), Node("b", "rule", "b")), (Edge("a", "b", "condition"),)))
     comments = [line.split(":")[0].strip() for line in text.splitlines() if line.startswith("  //")]
     assert comments == ["// signal", "// rule", "// condition"]

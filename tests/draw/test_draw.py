@@ -7,7 +7,7 @@ from ravestate.policy.compile import compile_policy
 
 
 @pytest.mark.parametrize(("format", "start"), [("svg", "<?xml"), ("dot", "digraph"), ("mermaid", "flowchart LR")])
-def test_a_policy_draws_a_diagram(format: str, start: str) -> None:
+def test_a_policy_can_be_drawn_in_each_format(format: str, start: str) -> None:
     policy = compile_policy(games())
     text = policy.diagram(format)  # type: ignore[arg-type]
     assert text.startswith(start) and text == draw(policy, format)
@@ -20,7 +20,7 @@ def test_svg_is_the_default() -> None:
     assert policy.diagram() == policy.diagram("svg")
 
 
-def test_the_message_for_an_unknown_format_names_the_known_ones() -> None:
+def test_the_message_for_an_unknown_format_lists_the_known_formats() -> None:
     with pytest.raises(ValueError, match="'png' is unknown: write one of 'svg', 'dot', 'mermaid'"):
         draw(compile_policy(games()), "png")
     assert list(FORMATS) == ["svg", "dot", "mermaid"]
@@ -31,7 +31,7 @@ def test_a_policy_without_rules_has_a_diagram() -> None:
     assert all(policy.diagram(format) for format in ("svg", "dot", "mermaid"))
 
 
-def test_the_diagram_has_the_required_modules() -> None:
+def test_the_diagram_includes_the_required_modules() -> None:
     base = Module("base")
     ping = base.signal("ping", input=True)
     rule(base, "sound", ping)

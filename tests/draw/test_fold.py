@@ -7,7 +7,7 @@ from ravestate.draw.svg import svg
 RULES = [*games().rules, *prompting().rules]
 
 
-def test_each_module_is_one_node_that_counts_its_rules() -> None:
+def test_folding_makes_each_module_one_node_with_the_number_of_its_rules() -> None:
     folded = fold(build(RULES))
     assert [(node.id, node.kind, node.note) for node in folded.nodes] == [
         ("module demo", "module", "8 rules"),
@@ -16,7 +16,7 @@ def test_each_module_is_one_node_that_counts_its_rules() -> None:
     assert "module prompt (3 rules)" in svg(folded)
 
 
-def test_several_edges_of_two_modules_become_one_arrow_of_the_strongest_kind() -> None:
+def test_several_edges_between_two_modules_become_one_edge_of_the_strongest_kind() -> None:
     nodes = (Node("s", "slot", "s", "m"), Node("r", "rule", "r", "n"))
     kinds: tuple[EdgeKind, ...] = ("reads", "condition_detached", "writes", "condition", "emits")
     edges = tuple(Edge("s", "r", kind, "label") for kind in kinds)

@@ -9,7 +9,7 @@ def test_a_name_is_qualified_by_its_module() -> None:
     assert (A.name, B.name) == ("a", "m:b")
 
 
-def test_two_nodes_of_one_id_are_refused() -> None:
+def test_two_nodes_with_the_same_id_are_refused() -> None:
     with pytest.raises(ValueError, match="share the id 'a'"):
         Diagram((A, A), ())
 

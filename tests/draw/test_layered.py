@@ -18,7 +18,7 @@ def test_long_lines_from_one_port_share_their_dummies() -> None:
     assert graph.chains[1][0] == graph.chains[2][0]
 
 
-def test_a_label_has_its_own_line_next_to_the_head() -> None:
+def test_a_label_has_its_own_vertex_next_to_the_head_of_the_arrow() -> None:
     graph = proper_layering([0, 3, 3], [(10.0, 10.0)] * 3, [link(0, 1, (30.0, 16.0)), link(0, 2)])
     label = graph.labels[0]
     assert label is not None and graph.labels[1] is None

@@ -31,7 +31,7 @@ def at_side(point: Point, box: Box) -> bool:
 
 
 def enters(line: tuple[Point, ...], box: Box) -> bool:
-    """Return whether a line runs through the inside of a box; each piece is clipped at the four borders."""
+    """Return whether a line runs through the inside of a box. Clip each segment at the four borders."""
     low = (box.x + NEAR, box.y + NEAR)
     high = (box.x + box.width - NEAR, box.y + box.height - NEAR)
     for a, b in pairwise(line):
@@ -74,7 +74,7 @@ def test_nothing_overlaps_and_each_line_joins_its_nodes(diagram: Diagram) -> Non
 
 
 @pytest.mark.parametrize("module", [question_answering(), games(), prompting(), many_rules(120)], ids=repr)
-def test_examples_neither_overlap_nor_cross_nodes(module: Module) -> None:
+def test_in_the_examples_nothing_overlaps_and_no_line_crosses_a_node(module: Module) -> None:
     check(build(module.rules))
 
 
@@ -112,7 +112,7 @@ def test_causes_are_left_of_their_effects() -> None:
     )
 
 
-def test_a_loop_runs_backwards_at_its_detached_edge() -> None:
+def test_only_the_detached_edge_of_a_loop_runs_backwards() -> None:
     diagram = build(prompting().rules)
     layout = laid_out(diagram)
     back = [e for e, line in zip(diagram.edges, layout.lines, strict=True) if line[-1][0] < line[0][0]]

@@ -13,7 +13,7 @@ EDGE = re.compile(rf"  n\d+ (-->|==>|-\.->)(\|{TEXT}\|)? n\d+")
 
 
 @given(diagrams())
-def test_any_name_gives_lines_that_are_statements(diagram: Diagram) -> None:
+def test_any_names_give_lines_that_are_valid_statements(diagram: Diagram) -> None:
     first, *lines = mermaid(diagram).splitlines()
     assert first == "flowchart LR"
     lines = [line for line in lines if not line.startswith(("  %%", "  classDef ", "  linkStyle "))]
@@ -27,25 +27,25 @@ def test_special_characters_become_entities() -> None:
     assert '["m<br/>#60;b#62; #34;x#34; a_b"]' in mermaid(Diagram((Node("a", "rule", '<b> "x" a_b', "m"),), ()))
 
 
-def test_kinds_without_their_own_arrow_have_words() -> None:
+def test_edges_without_their_own_kind_of_arrow_have_a_label() -> None:
     nodes = (Node("a", "slot", "a"), Node("b", "rule", "b"))
     text = mermaid(Diagram(nodes, (Edge("a", "b", "reads"), Edge("b", "a", "writes"))))
     assert '  n0 -.->|"reads"| n1' in text and "  n1 ==> n0" in text
 
 
-def test_the_worked_example_has_its_lines() -> None:
+def test_the_worked_example_has_the_expected_nodes() -> None:
     text = mermaid(build(games().rules))
     assert '(["demo<br/>input:changed"]):::srs-signal' in text
     assert '[["demo<br/>output"]]:::srs-slot' in text
     assert text.count('(("∧"))') == 2
 
 
-def test_a_comment_mentions_too_many_edges_for_the_default() -> None:
+def test_a_comment_warns_of_more_edges_than_mermaid_draws_by_default() -> None:
     assert "maxEdges" in mermaid(build(many_rules(250).rules))
     assert "maxEdges" not in mermaid(build(games().rules))
 
 
-def test_the_comments_explain_only_the_kinds_in_the_picture() -> None:
+def test_the_comments_explain_only_kinds_that_the_diagram_has() -> None:
     text = mermaid(Diagram((Node("a", "signal", "a"), Node("b", "rule", "b")), (Edge("a", "b", "condition"),)))
     comments = [line.split()[1] for line in text.splitlines() if line.startswith("  %%")]
     assert comments == ["signal", "rule", "condition"]

@@ -15,7 +15,7 @@ def connected(draw: st.DrawFn, most: int) -> tuple[int, list[Arc]]:
     for u, v in draw(st.lists(st.tuples(st.integers(0, most), st.integers(0, most)), max_size=2 * most)):
         if u < v < count:
             arcs.append((u, v, draw(weight), draw(length)))
-    order = draw(st.permutations(range(count)))  # numbers say nothing about layers
+    order = draw(st.permutations(range(count)))  # shuffle, so that numbers say nothing about layers
     return count, [(order[u], order[v], w, length) for u, v, w, length in arcs]
 
 
@@ -24,7 +24,7 @@ def cost(rank: list[int], arcs: list[Arc]) -> int:
 
 
 @given(connected(30))
-def test_every_arc_spans_its_length_and_layers_begin_at_zero(graph: tuple[int, list[Arc]]) -> None:
+def test_every_arc_spans_its_minimum_length_and_layers_begin_at_zero(graph: tuple[int, list[Arc]]) -> None:
     count, arcs = graph
     rank = network_simplex(count, arcs)
     assert min(rank) == 0
@@ -32,7 +32,7 @@ def test_every_arc_spans_its_length_and_layers_begin_at_zero(graph: tuple[int, l
 
 
 @given(connected(4))
-def test_no_other_ranks_make_the_arcs_shorter(graph: tuple[int, list[Arc]]) -> None:
+def test_the_total_length_of_the_arcs_is_minimal(graph: tuple[int, list[Arc]]) -> None:
     count, arcs = graph
     best = min(
         cost(list(rank), arcs)

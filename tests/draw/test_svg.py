@@ -26,7 +26,7 @@ def texts(root: ElementTree.Element, tag: str) -> list[str]:
 
 
 @given(diagrams())
-def test_any_name_gives_a_well_formed_document(diagram: Diagram) -> None:
+def test_any_names_give_a_well_formed_document(diagram: Diagram) -> None:
     titles = texts(parsed(diagram), "title")
     for node in diagram.nodes:
         assert any(clean(node.label) in title for title in titles)
@@ -39,7 +39,7 @@ def test_names_are_shown_unchanged() -> None:
     assert 'rule m<n:<b>&amp; "c"' in texts(root, "title")
 
 
-def test_the_title_has_the_whole_of_a_long_name() -> None:
+def test_the_title_of_a_node_has_the_whole_name_even_if_it_is_long() -> None:
     root = parsed(Diagram((Node("a", "slot", "x" * 300),), ()))
     assert "slot " + "x" * 300 in texts(root, "title")
     assert not any("x" * 300 in text for text in texts(root, "text"))
@@ -68,14 +68,14 @@ def legend(diagram: Diagram) -> list[str]:
     return [text.text or "" for text in key.iter(f"{SVG}text")]
 
 
-def test_the_legend_of_a_picture_with_every_kind_has_the_whole_notation() -> None:
+def test_the_legend_of_a_picture_with_all_kinds_explains_the_whole_notation() -> None:
     nodes = tuple(Node(kind, kind) for kind in NODES)
     diagram = Diagram(nodes, tuple(Edge("slot", "rule", kind) for kind in EDGES))
     plain, junctions = list(NODES.values())[:4], list(NODES.values())[4:]
     assert legend(diagram) == [*plain, *EDGES.values(), *junctions]
 
 
-def test_the_legend_explains_only_the_kinds_in_the_picture() -> None:
+def test_the_legend_explains_only_kinds_that_the_picture_has() -> None:
     assert legend(Diagram((), ())) == []
     module = Module("m")
     rule(module, "r", module.signal("a"))
@@ -93,7 +93,7 @@ def test_the_picture_has_a_light_and_a_dark_mode_and_loads_nothing() -> None:
     assert re.findall(r"https?://[^\"]*", text) == ["http://www.w3.org/2000/svg"]
 
 
-def test_each_used_head_is_defined() -> None:
+def test_the_document_defines_each_arrowhead_that_it_uses() -> None:
     text = svg(Diagram((Node("a", "slot"), Node("b", "rule")), (Edge("a", "b", "reads"),)))
     assert set(re.findall(r"url\(#([^)]*)\)", text)) <= set(re.findall(r'marker id="([^"]*)"', text))
 
@@ -122,7 +122,7 @@ def test_the_same_rules_give_the_same_bytes_in_any_process(format: str) -> None:
     assert len(outputs) == 1
 
 
-def test_a_policy_of_120_rules_is_complete() -> None:
+def test_the_picture_of_120_rules_has_every_rule() -> None:
     diagram = build(many_rules(120).rules)
     assert sum(node.kind == "rule" for node in diagram.nodes) == 120
     titles = texts(parsed(diagram), "title")

@@ -44,6 +44,6 @@ def test_straight_lines_need_no_track(segments: list[Segment]) -> None:
             assert track is None
 
 
-def test_a_hub_needs_one_track() -> None:
+def test_all_lines_of_a_hub_share_one_track() -> None:
     assert tracks([(0, i, 50.0, 10.0 * i) for i in range(1, 9)]).count == 1
     assert tracks([(i, 0, 10.0 * i, 50.0) for i in range(1, 9)]).count == 1

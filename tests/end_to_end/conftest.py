@@ -1,4 +1,4 @@
-"""The browser of the browser tests."""
+"""The browser that all browser tests share."""
 
 from collections.abc import Iterator
 
@@ -9,7 +9,7 @@ from end_to_end.stage import Stage
 
 @pytest.fixture(scope="session")
 def stage() -> Iterator[Stage]:
-    """One browser for all tests; each opens windows of its own."""
+    """One browser for all tests. Each test opens its own windows."""
     stage = Stage()
     yield stage
     stage.close()

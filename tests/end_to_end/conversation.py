@@ -1,4 +1,4 @@
-"""A conversation with the complete text agent in virtual time. It names the module that said each utterance."""
+"""A conversation with the complete text agent in virtual time. Each utterance has the name of its module."""
 
 from __future__ import annotations
 
@@ -16,11 +16,11 @@ from ravestate.modules import rawio, wildtalk
 from ravestate.testing import simulate
 
 WORDS = "Hm, that is small talk."
-"""The model's answer to everything."""
+"""The model's only answer."""
 
 
 class Model:
-    """A stand-in for the language model, which always gives the same answer. Other tests cover the language model."""
+    """A stand-in for a language model. It always gives the same answer."""
 
     async def load(self, progress: Progress | None = None) -> None:
         """Do nothing: there is nothing to load."""
@@ -42,12 +42,12 @@ class Line:
 
 
 class Conversation:
-    """The agent of ``ravestate chat`` without its console and its model.
+    """The agent of ``ravestate chat``, but without a console, and with a stand-in for the language model.
 
     Args:
         folder: The folder with the agent's memory and documents.
-        settings: Module's name → the values of its settings. With wildtalk's backend ``listen``, the listening skill
-            makes small talk; otherwise a model that always says the same.
+        settings: Settings of modules. Key: a module's name; value: its settings. With the backend ``listen`` of
+            wildtalk, the listening skill makes small talk; otherwise the stand-in `Model` does.
         without: The modules to leave out.
     """
 
@@ -63,7 +63,7 @@ class Conversation:
             "idle": {"bored_after": 5.0},
             "ontology": {"path": folder / "memory.lbug"},
             "genqa": {"index": folder / "documents.sqlite"},
-            "wildtalk": {"gate": False},  # its model always says the same
+            "wildtalk": {"gate": False},  # the gate could refuse the only answer of `Model`
         }
         for name, values in (settings or {}).items():
             chosen[name] = {**chosen.get(name, {}), **values}
@@ -88,11 +88,11 @@ class Conversation:
             assert self.sim.failures == []
 
     def say(self, text: str, seconds: float = 2.0) -> list[Line]:
-        """Say something; return the utterances in the seconds after it."""
+        """Say something; return the utterances of the agent in the next `seconds`."""
         return self._while(lambda: self.sim.say(text), seconds)
 
     def silence(self, seconds: float = 12.0) -> list[Line]:
-        """Say nothing for a while; return the utterances in this time."""
+        """Say nothing for some seconds; return the utterances of the agent in this time."""
         return self._while(lambda: None, seconds)
 
     def _while(self, act: Any, seconds: float) -> list[Line]:
@@ -102,26 +102,26 @@ class Conversation:
         return self.lines()[known:]
 
     def lines(self) -> list[Line]:
-        """Return all utterances so far."""
+        """Return all utterances of the agent so far."""
         runs = {record.run: record for record in self.sim.trace if isinstance(record, Started)}
         spikes = {record.spike: record for record in self.sim.trace if isinstance(record, Born)}
 
-        def meant(run: int) -> str:
-            """Return the rule that caused an utterance, even if the verbaliser said it."""
+        def source_rule(run: int) -> str:
+            """Return the rule behind an utterance. If the verbaliser said it, this is the rule that asked for it."""
             started = runs[run]
             if started.rule == "verbaliser:verbalise":
-                return meant(spikes[started.spikes[0]].source)
+                return source_rule(spikes[started.spikes[0]].source)
             return started.rule
 
         return [
-            Line(meant(record.run).split(":")[0], record.value)
+            Line(source_rule(record.run).split(":")[0], record.value)
             for record in self.sim.trace
             if isinstance(record, Set) and record.slot == rawio.output.name
         ]
 
 
 def spoken_by(lines: Sequence[Line]) -> list[str]:
-    """Return the modules that spoke, in order."""
+    """Return the module of each utterance, in order."""
     return [line.module for line in lines]
 
 

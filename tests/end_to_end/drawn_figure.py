@@ -1,4 +1,4 @@
-"""Draw a figure with a face, for the documentation, which must not show a photo of a person.
+"""Draw a figure with a face as a video. The documentation shows it, because it must not show a photo of a person.
 
     python drawn_figure.py FILE.mjpeg
 
@@ -18,7 +18,7 @@ SKIN, SHADE, HAIR, SHIRT, WALL, TABLE = (
 
 
 def figure(x: int = 320, y: int = 215) -> Any:
-    """Return the picture (BGR), with the middle of the face at a given place."""
+    """Return the picture (BGR), with the centre of the face at (x, y)."""
     picture = np.full((*SIZE, 3), WALL, np.uint8)
     cv2.rectangle(picture, (0, 330), (640, 480), TABLE, -1)
     cv2.ellipse(picture, (x, y + 255), (170, 140), 0, 180, 360, SHIRT, -1)
@@ -43,7 +43,7 @@ def figure(x: int = 320, y: int = 215) -> Any:
 
 
 def darken(picture: Any, share: float, soft: float, centre: tuple[int, int], axes: tuple[int, int]) -> None:
-    """Draw a soft shadow on a picture."""
+    """Darken an ellipse of a picture, with soft edges."""
     shadow = np.zeros(SIZE, np.float32)
     cv2.ellipse(shadow, centre, axes, 0, 0, 360, 1.0, -1)
     picture[:] = picture * (1 - share * cv2.GaussianBlur(shadow, (0, 0), soft)[..., None])

@@ -1,4 +1,4 @@
-"""An agent to talk with, for the tests in a browser."""
+"""Modules of agents for the browser tests."""
 
 import asyncio
 
@@ -43,7 +43,7 @@ storyteller = rs.Module("storyteller", requires=(rawio,))
 
 
 class Cue:
-    """Two events for which the story waits. The test sets them on the same loop."""
+    """Two events for which `tell` waits. The test sets them on the same loop."""
 
     thought = asyncio.Event()
     told = asyncio.Event()
@@ -55,7 +55,7 @@ class Cue:
     emits=rawio.piece,
 )
 async def tell(ctx: rs.RuleContext) -> None:
-    """Think, and then tell the story in two pieces. The test decides when the story goes on."""
+    """Think, and then tell the story in two pieces. Before each piece, wait for the test."""
     await Cue.thought.wait()
     ctx[rawio.speaking] = True
     ctx.emit(rawio.piece, "Once upon a time ")

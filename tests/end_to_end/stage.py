@@ -1,6 +1,6 @@
-"""Run servers and Chromium for browser tests, on one loop in a thread of its own.
+"""Run servers and Chromium for browser tests, on a loop in a separate thread.
 
-A thread that uses Playwright has a running loop, and the other tests need a thread without a running loop.
+Playwright needs a running loop in its thread; other tests need a thread without a running loop.
 """
 
 from __future__ import annotations
@@ -24,14 +24,14 @@ from ravestate.runtime.agent import Agent
 __all__ = ["PHONE", "Host", "Stage", "hide", "on_stage"]
 
 LIMIT = 180
-"""Seconds after which a test that waits in vain fails."""
+"""A test fails after this many seconds."""
 
-expect.set_options(timeout=30_000)  # milliseconds; long, because a slow machine must not fail
+expect.set_options(timeout=30_000)  # milliseconds; long, so that the tests also pass on a slow machine
 
 PHONE = {"viewport": {"width": 360, "height": 640}, "has_touch": True, "is_mobile": True}
 CHROMIUM = ("chromium", "chromium-browser")
 SHELL = "chromium-headless-shell"
-"""Chromium without windows. A page takes a third of the time in it. It cannot deny a page the microphone or camera."""
+"""Chromium without windows is three times as fast. But it cannot deny a page the microphone or the camera."""
 FLAGS = [
     "--no-sandbox",  # for tests that run as root, in a container
     "--disable-gpu",
@@ -53,7 +53,7 @@ async def hide(page: Page) -> None:
 
 
 class Host:
-    """A page on a server. A test can make the network to it fail."""
+    """A server with an agent's page. A test can interrupt the network between the server and its clients."""
 
     def __init__(self, server: Server) -> None:
         self.server = server
@@ -78,7 +78,7 @@ class Host:
 
     @contextlib.contextmanager
     def away(self) -> Iterator[None]:
-        """Lose all connections, and take no new ones within the ``with`` block."""
+        """Within the ``with`` block, no client is connected: lose all connections, and refuse new ones."""
         access = self.app.state.access
         access.refusal = lambda headers: "away"
         self.drop()
@@ -101,12 +101,12 @@ class Stage:
 
     @contextlib.asynccontextmanager
     async def launch(self, *flags: str, windows: bool = True) -> AsyncGenerator[Browser]:
-        """Start a Chromium with more flags than usual; without `windows`, the headless shell if it is installed."""
+        """Start Chromium with additional flags. If `windows` is false, use the headless shell if it is installed."""
         names = CHROMIUM if windows else (SHELL, *CHROMIUM)
         found = os.environ.get("CHROMIUM") or next(filter(None, map(shutil.which, names)), None)
         if found is None:
             raise AssertionError(
-                "the browser tests need Chromium: apt-get install chromium, or say where it is: CHROMIUM=/path/to/it"
+                "the browser tests need Chromium: apt-get install chromium, or set CHROMIUM=/path/to/chromium"
             )
         browser = await self._playwright.chromium.launch(executable_path=found, args=[*FLAGS, *flags])
         try:
@@ -115,7 +115,7 @@ class Stage:
             await browser.close()
 
     def devices(self, *, sound: str = "", film: Path | None = None) -> contextlib.AbstractAsyncContextManager[Browser]:
-        """Start a Chromium that may use a microphone and a camera, which play files.
+        """Start Chromium with a microphone and a camera that play files. Pages may use both without asking.
 
         Args:
             sound: The recording that the microphone repeats. If the name ends in ``%noloop``, it plays once.
@@ -129,7 +129,7 @@ class Stage:
         return self.launch(*flags)
 
     def run(self, work: Coroutine[Any, Any, Any]) -> Any:
-        """Run a coroutine on the loop, and wait for its result."""
+        """Run a coroutine on the loop of the stage; return its result."""
 
         async def limited() -> Any:
             async with asyncio.timeout(LIMIT):
@@ -146,7 +146,7 @@ class Stage:
 
     @contextlib.asynccontextmanager
     async def serve(self, *modules: Any, **settings: Any) -> AsyncGenerator[Host]:
-        """Serve the page of an agent."""
+        """Serve the chat page of an agent with these modules and settings of `webio`."""
         agent = Agent(*modules, webio, settings={"webio": {"port": 0, **settings}})
         async with Server(agent) as server:
             yield Host(server)
@@ -159,9 +159,8 @@ class Stage:
 
         Args:
             address: The address of the page.
-            browser: The browser, if it is not the usual one.
-            complaints: Whether the browser may report errors, such as a lost connection. Otherwise an error fails the
-                test.
+            browser: The browser; by default, the one that all tests share.
+            complaints: Whether the browser may report errors (e.g. a lost connection). Otherwise an error fails the test.
             options: Options of the window, e.g. `PHONE`.
         """
         window = await (browser or self.browser).new_context(reduced_motion="reduce", **options)
@@ -179,7 +178,7 @@ class Stage:
 
 
 def on_stage(test: Callable[..., Coroutine[Any, Any, None]]) -> Callable[..., None]:
-    """Run an async test function on the stage, which is its first argument."""
+    """Run an async test function on the loop of the stage. The stage is its first argument."""
 
     @functools.wraps(test)
     def run(stage: Stage, **fixtures: Any) -> None:

@@ -1,4 +1,4 @@
-"""Accessibility of the page, by axe, and the size of its scripts."""
+"""The accessibility of the chat page, checked by axe, and the size of its scripts."""
 
 import asyncio
 import gzip
@@ -14,14 +14,14 @@ from ravestate.modules.platform.webio.application import PAGE
 
 AXE = Path(__file__).parents[2] / "frontend" / "node_modules" / "axe-core" / "axe.min.js"
 SCRIPT = 60_000
-"""The maximum number of bytes of compressed script on the page."""
+"""The maximum size of all scripts of the page, compressed (bytes)."""
 
 
 async def findings(page: Page) -> list[str]:
     """Return axe's serious and critical findings."""
     if not AXE.exists():
-        raise AssertionError("the check of accessibility needs axe-core: npm ci --prefix frontend")
-    # Run axe as the browser's own tools do, because the page forbids other scripts.
+        raise AssertionError("the accessibility tests need axe-core: run npm ci --prefix frontend")
+    # The page forbids other scripts, so run axe as the browser's developer tools would.
     await page.evaluate(AXE.read_text(encoding="utf-8"))
     found = await page.evaluate("axe.run({resultTypes: ['violations']})")
     return [
@@ -83,7 +83,7 @@ async def test_axe_finds_nothing_serious_on_a_page_that_asks_for_a_token(stage: 
 
 
 @on_stage
-async def test_the_page_loads_little_and_only_from_its_own_server(stage: Stage) -> None:
+async def test_the_page_loads_only_small_scripts_and_only_from_its_own_server(stage: Stage) -> None:
     async with stage.serve(host) as served, stage.open(served.address) as page:
         await expect(page.get_by_text("Good evening.")).to_be_visible()
         loaded = await page.evaluate("performance.getEntriesByType('resource').map((entry) => entry.name)")

@@ -23,7 +23,7 @@ from ravestate.modules.platform.webio.server import Server
 from ravestate.modules.platform.webio.session import Ending
 
 SCRIPT = 300_000
-"""The maximum number of bytes of compressed script on the page."""
+"""The maximum size of all scripts of the page, compressed (bytes)."""
 
 keeper = rs.Module("keeper", requires=(rawio,))
 question = keeper.signal("question", payload=str)
@@ -32,7 +32,7 @@ rung = keeper.signal("rung")
 
 
 class Cue:
-    """The test sets the event when the classifier may end."""
+    """An event for which the classifier waits. The test sets it."""
 
     classified = asyncio.Event()
 
@@ -62,13 +62,13 @@ async def small_talk(ctx: rs.RuleContext) -> None:
 
 @keeper.rule(when=rung.min_age(60.0).max_age(None), writes=notebook)
 async def note(ctx: rs.RuleContext) -> None:
-    """Write a note a minute after the bell."""
+    """Write a note 60 s after the signal `rung`."""
     ctx[notebook] = "it rang"
 
 
 @contextlib.asynccontextmanager
 async def served(*modules: rs.Module, **settings: Any) -> AsyncGenerator[Host]:
-    """Serve an agent (by default the keeper) with its board."""
+    """Serve an agent with its board. Without modules, the agent is `keeper`."""
     Cue.classified = asyncio.Event()
     Cue.classified.set()
     options = {"webio": {"port": 0, "title": "Elske", **settings}}
@@ -85,12 +85,12 @@ async def say(page: Page, text: str) -> None:
 
 
 def name(page: Page, rule: str) -> Locator:
-    """Return the name of a rule beside its lane."""
+    """Return the button with the name of a rule, beside its lane."""
     return page.locator(f'button.lane[title="{rule}"]')
 
 
 def node(page: Page, id: str) -> Locator:
-    """Return a node of the diagram."""
+    """Return the node of the diagram with an id."""
     return page.locator(f'[data-id="{id}"]')
 
 
@@ -106,7 +106,7 @@ async def lane(page: Page, rule: str) -> list[dict[str, Any]]:
 
 
 async def until_lane(page: Page, rule: str, outcome: str) -> list[dict[str, Any]]:
-    """Return the lane of a rule after its last bar has ended with an outcome."""
+    """Wait until the last bar in the lane of a rule has this outcome; return the bars."""
     await page.wait_for_function(
         "([rule, outcome]) => window.raveboard.trace.lanes.get(rule)?.bars.at(-1)?.outcome === outcome",
         arg=[rule, outcome],
@@ -115,7 +115,7 @@ async def until_lane(page: Page, rule: str, outcome: str) -> list[dict[str, Any]
 
 
 async def painted(page: Page, rule: str) -> set[str]:
-    """Return the states whose colours are in the lane of a rule."""
+    """Return the states whose colours the lane of a rule shows."""
     return set(
         await page.evaluate(
             """rule => {
@@ -137,7 +137,7 @@ async def painted(page: Page, rule: str) -> set[str]:
 
 
 async def passing(page: Page, seconds: float) -> None:
-    """Wait until the agent's clock on the page has moved on by some seconds."""
+    """Wait until the agent's clock on the page has advanced by some seconds."""
     await page.evaluate(
         """seconds => new Promise(resolve => {
             const until = window.raveboard.now() + seconds;
@@ -154,13 +154,13 @@ async def drawn(page: Page) -> None:
 
 
 async def step_until(page: Page, condition: str) -> None:
-    """Step until a condition holds in the page."""
+    """Press "Step" until a JavaScript condition is true in the page."""
     for _ in range(100):
         await page.get_by_role("button", name="Step").click()
         await drawn(page)
         if await page.evaluate(condition):
             return
-    raise AssertionError(f"a hundred steps, and still not: {condition}")
+    raise AssertionError(f"still false after a hundred steps: {condition}")
 
 
 @on_stage
@@ -172,7 +172,7 @@ async def test_the_timeline_shows_the_rule_that_won_and_the_rule_that_waited(sta
         await page.wait_for_function(
             "() => window.raveboard.trace.lanes.get('keeper:small_talk')?.bars[0]?.phases.at(-1)?.state === 'waiting'"
         )
-        await passing(page, 0.4)  # a wait that is wide enough to see
+        await passing(page, 0.4)  # long enough for a bar that can be seen
         assert "waiting" in await painted(page, "keeper:small_talk")
         assert "running" in await painted(page, "keeper:classify")
         Cue.classified.set()
@@ -226,7 +226,7 @@ async def test_the_rule_panel_shows_the_parts_of_the_utility(stage: Stage) -> No
 
 
 @on_stage
-async def test_the_clock_pauses_steps_and_continues_independently_of_the_view(stage: Stage) -> None:
+async def test_pause_step_and_continue_act_on_the_clock_and_not_on_the_view(stage: Stage) -> None:
     async with served() as host, stage.open(f"{host.address}board/") as page:
         await page.get_by_role("button", name="Pause", exact=True).click()
         await expect(page.locator(".status")).to_have_text("paused")
@@ -261,7 +261,7 @@ async def test_a_step_moves_the_clock_to_the_next_deadline(stage: Stage) -> None
 
 
 @on_stage
-async def test_slots_are_written_by_hand_and_markup_in_them_is_shown(stage: Stage) -> None:
+async def test_the_board_writes_slots_and_shows_markup_in_them_as_text(stage: Stage) -> None:
     async with served() as host, stage.open(f"{host.address}board/") as page:
         await page.get_by_role("tab", name="Slots").click()
         await page.get_by_role("button", name="Edit keeper:notebook").click()
@@ -312,7 +312,7 @@ async def test_the_board_asks_for_the_token(stage: Stage) -> None:
 
 
 @on_stage
-async def test_a_trace_is_exported_and_opened_again_without_an_agent(stage: Stage, tmp_path: Path) -> None:
+async def test_an_exported_trace_can_be_opened_as_a_recording(stage: Stage, tmp_path: Path) -> None:
     async with served() as host, stage.open(f"{host.address}board/", complaints=True) as page:
         await say(page, "Since when?")
         await until_lane(page, "keeper:answer", "done")
@@ -336,7 +336,7 @@ async def test_a_trace_is_exported_and_opened_again_without_an_agent(stage: Stag
 
 
 @on_stage
-async def test_a_lost_connection_comes_back_with_the_history(stage: Stage) -> None:
+async def test_after_a_lost_connection_the_board_shows_the_history_again(stage: Stage) -> None:
     async with served() as host, stage.open(f"{host.address}board/", complaints=True) as page:
         await say(page, "Since when?")
         await until_lane(page, "keeper:answer", "done")
@@ -347,7 +347,7 @@ async def test_a_lost_connection_comes_back_with_the_history(stage: Stage) -> No
 
 
 @on_stage
-async def test_the_diagram_folds_unfolds_and_lights_up(stage: Stage) -> None:
+async def test_the_diagram_folds_modules_and_shows_running_and_waiting_rules(stage: Stage) -> None:
     async with served() as host, stage.open(f"{host.address}board/") as page:
         await page.get_by_role("button", name="Diagram").click()
         await expect(node(page, "rule keeper:answer")).to_be_visible()
@@ -363,7 +363,7 @@ async def test_the_diagram_folds_unfolds_and_lights_up(stage: Stage) -> None:
 
 
 def skill(number: int) -> rs.Module:
-    """Return one of many modules, with four rules that answer to their number."""
+    """Return one of many modules. Its four rules react to inputs with its number."""
     module = rs.Module(f"skill_{number}", requires=(rawio,))
     topic, asked, memory = module.signal("topic"), module.signal("asked"), module.slot("memory", 0)
     heard = rawio.input.changed.where(lambda text: str(number) in text)
@@ -388,7 +388,7 @@ def skill(number: int) -> rs.Module:
 
 
 @on_stage
-async def test_a_policy_of_more_than_a_hundred_rules_can_be_read(stage: Stage) -> None:
+async def test_a_policy_of_more_than_a_hundred_rules_can_be_filtered_and_unfolded(stage: Stage) -> None:
     skills = [skill(number) for number in range(30)]
     async with (
         served(*skills) as host,
@@ -397,7 +397,7 @@ async def test_a_policy_of_more_than_a_hundred_rules_can_be_read(stage: Stage) -
         lanes = page.locator('button.lane[title*=":"]')
         await say(page, "7")
         await until_lane(page, "skill_7:answer", "done")
-        assert 4 <= await lanes.count() < 50  # the rules that did something
+        assert 4 <= await lanes.count() < 50  # only the rules that reacted have a lane
         await page.get_by_role("button", name="idle rules").click()
         await expect(lanes).to_have_count(129)
         await page.get_by_label("Filter rules").fill("skill_12 output")
@@ -422,9 +422,9 @@ async def test_a_policy_of_more_than_a_hundred_rules_can_be_read(stage: Stage) -
         await expect(chosen).to_be_in_viewport()
         shown = await chosen.bounding_box()
         assert shown is not None
-        assert shown["height"] > 20  # pixels, for two lines
+        assert shown["height"] > 20  # pixels: enough for two lines of text
         joined = page.locator(".node:not(.faint)")
-        await expect(joined).to_have_count(3)  # the rule's signal and slot
+        await expect(joined).to_have_count(3)  # the rule, its signal and its slot
 
 
 @on_stage
@@ -441,7 +441,7 @@ async def test_the_result_of_the_newest_input_links_to_its_rules(stage: Stage) -
 
 
 @on_stage
-async def test_choosing_a_cause_shows_the_time_in_which_it_was_answered(stage: Stage) -> None:
+async def test_choosing_a_cause_shows_the_time_from_the_cause_to_its_answer(stage: Stage) -> None:
     async with served() as host, stage.open(f"{host.address}board/") as page:
         await say(page, "Since when?")
         await until_lane(page, "keeper:answer", "done")
@@ -460,7 +460,7 @@ async def test_choosing_a_cause_shows_the_time_in_which_it_was_answered(stage: S
 
 
 @on_stage
-async def test_a_conversation_that_has_ended_takes_nothing_more_and_says_why(stage: Stage) -> None:
+async def test_after_the_end_of_a_conversation_the_board_refuses_input_and_says_why(stage: Stage) -> None:
     async with served() as host, stage.open(f"{host.address}board/") as page:
         await page.get_by_role("tab", name="Slots").click()
         await expect(page.get_by_role("button", name="Edit keeper:notebook")).to_be_visible()
@@ -492,7 +492,7 @@ async def test_on_a_phone_nothing_is_wider_than_the_screen(stage: Stage) -> None
 
 
 @on_stage
-async def test_the_keyboard_reaches_the_timeline(stage: Stage) -> None:
+async def test_the_timeline_can_be_used_with_the_keyboard(stage: Stage) -> None:
     async with served() as host, stage.open(f"{host.address}board/") as page:
         await page.keyboard.press("/")
         await page.keyboard.type("small")
@@ -519,7 +519,7 @@ async def test_the_keyboard_reaches_the_timeline(stage: Stage) -> None:
 
 
 @on_stage
-async def test_the_keyboard_reaches_every_rule_of_the_diagram(stage: Stage) -> None:
+async def test_the_diagram_can_be_used_with_the_keyboard(stage: Stage) -> None:
     async with (
         served(*(skill(number) for number in range(12))) as host,
         stage.open(f"{host.address}board/", viewport={"width": 900, "height": 600}) as page,
@@ -547,7 +547,7 @@ async def test_the_keyboard_reaches_every_rule_of_the_diagram(stage: Stage) -> N
 
 
 @on_stage
-async def test_a_thousand_events_a_second_do_not_stutter_or_delay_the_agent(stage: Stage) -> None:
+async def test_the_board_keeps_painting_and_misses_nothing_at_a_thousand_events_a_second(stage: Stage) -> None:
     async with served() as host, stage.open(f"{host.address}board/") as page:
         await expect(page.locator(".status")).to_have_text("live")
         (session,) = host.sessions
@@ -568,7 +568,7 @@ async def test_a_thousand_events_a_second_do_not_stutter_or_delay_the_agent(stag
         )
         await raising
         await page.wait_for_function("() => window.raveboard.trace.spikes.length > 5000")
-        assert len(frames) == 120  # it was painted all the time
+        assert len(frames) == 120  # the page painted frames all the time
         assert await page.evaluate("window.raveboard.missed") == 0
 
 
@@ -598,7 +598,7 @@ async def test_axe_finds_nothing_serious_in_any_view_of_the_board(
     assert not found, "\n".join(found)
 
 
-def test_the_scripts_of_the_page_are_small() -> None:
+def test_the_scripts_of_the_page_are_within_the_size_limit() -> None:
     scripts = sum(len(gzip.compress(file.read_bytes())) for file in PAGE.rglob("*.js"))
     assert 0 < scripts < SCRIPT
 
@@ -661,7 +661,7 @@ clumsy = rs.Module("clumsy", requires=(rawio,))
 
 @clumsy.rule(when=rawio.input.changed, writes=rawio.output)
 async def spill(ctx: rs.RuleContext) -> None:
-    """Fail."""
+    """Raise an error."""
     raise ValueError("out of ink")
 
 
@@ -676,7 +676,7 @@ async def test_a_failure_is_counted_and_shows_its_traceback(stage: Stage) -> Non
 
 
 @on_stage
-async def test_the_picture_of_the_chat_beside_its_board_can_be_taken(stage: Stage, tmp_path: Path) -> None:
+async def test_the_picture_of_the_chat_and_its_board_can_be_taken(stage: Stage, tmp_path: Path) -> None:
     picture = Path(os.environ.get("PICTURES", tmp_path)) / "chat-and-board.png"
     chat_size, board_size = {"width": 480, "height": 720}, {"width": 1120, "height": 720}
     async with (

@@ -1,4 +1,4 @@
-"""The camera on the page, in a real browser whose camera is a video of photos, with the real vision worker."""
+"""The camera of the chat page, in a real browser with the real vision worker. The browser's camera plays a video."""
 
 import os
 import re
@@ -32,7 +32,7 @@ with open(a[1], "wb") as out:
 
 @pytest.fixture(scope="module")
 def video(tmp_path_factory: pytest.TempPathFactory) -> Path:
-    """A video that Chromium repeats: a man on the left."""
+    """A video of a man on the left. Chromium repeats it as the camera's picture."""
     file = tmp_path_factory.mktemp("camera") / "man.mjpeg"
     make(VIDEO, photo("obama"), file)
     return file
@@ -50,14 +50,14 @@ async def turn_on(page: Page) -> None:
 
 
 @on_stage
-async def test_a_stranger_tells_their_name_and_sees_it_on_their_face_and_on_the_board(
+async def test_the_name_that_a_stranger_tells_appears_at_their_face_and_on_the_board(
     stage: Stage, video: Path, tmp_path: Path
 ) -> None:
     settings: dict[str, Any] = {
         "webio": {"port": 0, "title": "Elske"},
         "ontology": {"path": str(tmp_path / "memory.lbug")},
         "idle": {"bored_after": 1e6},
-        "visionio": {"fps": 5, "gone_after": 60},  # a busy machine shows no picture for seconds
+        "visionio": {"fps": 5, "gone_after": 60},  # on a busy machine, no picture may arrive for seconds
     }
     agent = RecordedAgent(webio, hibye, persqa, visionio, settings=settings)
     async with (
@@ -72,7 +72,8 @@ async def test_a_stranger_tells_their_name_and_sees_it_on_their_face_and_on_the_
         box, whole = await face.bounding_box(), await page.locator(".picture").bounding_box()
         assert box is not None
         assert whole is not None
-        assert box["x"] + box["width"] / 2 > whole["x"] + whole["width"] / 2  # the preview is a mirror
+        # The preview is mirrored, so the face is on the right.
+        assert box["x"] + box["width"] / 2 > whole["x"] + whole["width"] / 2
         field = page.get_by_label("What you say to Elske")
         await field.fill("My name is Barack.")
         await field.press("Enter")
@@ -91,7 +92,7 @@ async def test_a_stranger_tells_their_name_and_sees_it_on_their_face_and_on_the_
 
 @on_stage
 async def test_the_pictures_in_the_documentation_can_be_taken(stage: Stage, tmp_path: Path) -> None:
-    """`PICTURES=docs/pictures pytest ...` renews them."""
+    """To renew the pictures, run `PICTURES=docs/pictures pytest ...`."""
     figure = tmp_path / "figure.mjpeg"
     make(Path(__file__).with_name("drawn_figure.py").read_text(), figure)
     folder = Path(os.environ.get("PICTURES", tmp_path))
@@ -100,7 +101,7 @@ async def test_the_pictures_in_the_documentation_can_be_taken(stage: Stage, tmp_
         "ontology": {"path": str(tmp_path / "memory.lbug")},
         "idle": {"bored_after": 1e6},
         "emotion": {"emoji": False},
-        "visionio": {"fps": 5, "gone_after": 60},  # a busy machine shows no picture for seconds
+        "visionio": {"fps": 5, "gone_after": 60},  # on a busy machine, no picture may arrive for seconds
     }
     agent = RecordedAgent(webio, hibye, persqa, charades, visionio, settings=settings)
     async with (
@@ -133,7 +134,7 @@ async def test_the_pictures_in_the_documentation_can_be_taken(stage: Stage, tmp_
 
 
 @on_stage
-async def test_the_visitor_refuses_the_camera(stage: Stage) -> None:
+async def test_a_visitor_who_refuses_the_camera_gets_advice_and_can_turn_it_on_later(stage: Stage) -> None:
     async with (
         stage.launch("--use-fake-device-for-media-stream", "--deny-permission-prompts") as browser,
         stage.serve(eyes, title="Elske") as served,
@@ -144,7 +145,7 @@ async def test_the_visitor_refuses_the_camera(stage: Stage) -> None:
         await expect(page.get_by_role("alert")).to_contain_text("The camera is not allowed. Allow it")
         await expect(view(page)).to_have_count(0)
         await page.context.grant_permissions(["camera"])
-        await page.get_by_role("button", name="see you").click()  # the notice comes only once
+        await page.get_by_role("button", name="see you").click()  # the notice before the camera does not appear again
         await expect(view(page)).to_be_visible()
         await expect(page.get_by_role("alert")).to_have_count(0)
 
@@ -170,7 +171,7 @@ async def test_on_a_phone_every_button_is_large_enough_for_a_finger(stage: Stage
 
 
 async def fits(page: Page) -> None:
-    """Check that fingers can hit each button, and that nothing is wider than the screen."""
+    """Check that each button is large enough for a finger, and that nothing is wider than the screen."""
     for button in await page.get_by_role("button").all():
         box = await button.bounding_box()
         assert box is not None
@@ -181,7 +182,7 @@ async def fits(page: Page) -> None:
 
 
 @on_stage
-async def test_in_the_background_the_camera_is_off(stage: Stage, video: Path) -> None:
+async def test_the_camera_goes_off_when_the_page_goes_to_the_background(stage: Stage, video: Path) -> None:
     async with (
         stage.devices(film=video) as browser,
         stage.serve(eyes, title="Elske") as served,
@@ -196,7 +197,7 @@ async def test_in_the_background_the_camera_is_off(stage: Stage, video: Path) ->
 WALK = """
 film = cv2.VideoCapture(a[0])
 with open(a[1], "wb") as out:
-    for _ in range(90):  # three seconds, which Chromium repeats
+    for _ in range(90):  # three seconds; Chromium repeats them
         more, picture = film.read()
         if not more:
             break

@@ -1,4 +1,4 @@
-"""The page in a real browser: a conversation, and its interruptions."""
+"""The chat page in a real browser: conversations, lost connections, phones, the keyboard, and the token."""
 
 import asyncio
 from typing import Any
@@ -30,7 +30,7 @@ async def say(page: Page, text: str) -> None:
 
 
 async def said(page: Page, *texts: str) -> None:
-    """Wait until the page shows exactly these messages."""
+    """Wait until the page shows exactly these messages. A message of the visitor begins with ``> ``."""
     await expect(lines(page)).to_have_text([f"{who} {text}" for who, text in map(spoken, texts)])
 
 
@@ -51,7 +51,7 @@ async def test_a_visitor_talks_with_the_agent(stage: Stage) -> None:
 
 
 @on_stage
-async def test_the_agent_learns_that_the_visitor_is_writing_but_not_of_each_key(stage: Stage) -> None:
+async def test_the_agent_learns_that_the_visitor_is_writing_but_not_at_each_key(stage: Stage) -> None:
     async with stage.serve(host, watcher, title="Elske") as served, stage.open(served.address) as page:
         await said(page, "Good evening.")
         text = "It is quiet here, and yet I hear the raven."
@@ -59,7 +59,7 @@ async def test_the_agent_learns_that_the_visitor_is_writing_but_not_of_each_key(
         await page.keyboard.press("Enter")
         await expect(log(page)).to_contain_text(f"You said: {text}")
         told = await log(page).get_by_text("You are writing.").count()
-        assert 1 <= told < len(text) / 4  # once in two seconds
+        assert 1 <= told < len(text) / 4  # at most once every two seconds
 
 
 @on_stage
@@ -84,7 +84,8 @@ async def test_the_page_shows_that_the_agent_thinks_and_then_speaks(stage: Stage
         Cue.thought.set()
         growing = page.locator(".partial")
         await expect(growing).to_have_text("Once upon a time")
-        await expect(growing).to_have_attribute("aria-hidden", "true")  # read out once it is whole
+        # A screen reader reads it only when it is complete.
+        await expect(growing).to_have_attribute("aria-hidden", "true")
         await expect(log(page)).not_to_contain_text("is thinking")
         Cue.told.set()
         await said(page, "Good evening.", "> Tell me a story.", "Once upon a time there was a raven.")
@@ -140,7 +141,7 @@ async def test_a_lost_connection_loses_nothing(stage: Stage) -> None:
 
 
 @on_stage
-async def test_connections_that_break_all_the_time_lose_nothing(stage: Stage) -> None:
+async def test_repeatedly_lost_connections_lose_nothing(stage: Stage) -> None:
     async with (
         stage.serve(host, title="Elske") as served,
         stage.open(served.address, complaints=True) as page,
@@ -157,7 +158,7 @@ async def test_connections_that_break_all_the_time_lose_nothing(stage: Stage) ->
 
 
 @on_stage
-async def test_after_a_restart_a_new_conversation_follows(stage: Stage) -> None:
+async def test_if_the_conversation_ended_meanwhile_a_new_conversation_begins(stage: Stage) -> None:
     async with (
         stage.serve(host, title="Elske") as first,
         stage.open(first.address, complaints=True) as page,
@@ -181,7 +182,7 @@ async def test_when_the_agent_is_switched_off_the_page_says_so(stage: Stage) -> 
 
 
 @on_stage
-async def test_a_script_is_shown_and_not_run(stage: Stage) -> None:
+async def test_a_script_in_a_message_or_title_is_shown_as_text(stage: Stage) -> None:
     script = "<img src=x onerror='hacked=1'><script>hacked=1</script><svg onload=hacked=1>{@html 1}"
     async with stage.serve(host, title=script) as served, stage.open(served.address) as page:
         await say(page, script)
@@ -205,7 +206,7 @@ async def test_the_page_runs_no_injected_script(stage: Stage) -> None:
 
 
 @on_stage
-async def test_on_a_phone_everything_fits(stage: Stage) -> None:
+async def test_on_a_phone_long_messages_fit_the_screen(stage: Stage) -> None:
     async with stage.serve(host, title="Elske") as served, stage.open(served.address, **PHONE) as page:
         await said(page, "Good evening.")
         for text in ("w" * 300, "a long sentence, such as one has to read on a small screen, " * 5):
@@ -220,7 +221,7 @@ async def test_on_a_phone_everything_fits(stage: Stage) -> None:
 
 
 @on_stage
-async def test_on_a_phone_fingers_find_everything(stage: Stage) -> None:
+async def test_on_a_phone_all_controls_are_large_enough_for_a_finger(stage: Stage) -> None:
     agent = Agent(host, webio, settings={"webio": {"port": 0, "token": TOKEN}})
 
     async def check(page: Page) -> None:
@@ -252,7 +253,7 @@ async def test_on_a_phone_fingers_find_everything(stage: Stage) -> None:
 
 
 @on_stage
-async def test_the_page_first_suggests_three_things_to_say(stage: Stage) -> None:
+async def test_a_new_conversation_suggests_three_things_to_say(stage: Stage) -> None:
     async with stage.serve(host, title="Elske") as served, stage.open(served.address, **PHONE) as page:
         offered = page.get_by_role("list", name="Things to say").get_by_role("button")
         await expect(offered).to_have_text(["Hello!", "Who are you?", "What can you do?"])
@@ -262,7 +263,7 @@ async def test_the_page_first_suggests_three_things_to_say(stage: Stage) -> None
 
 
 @on_stage
-async def test_suggestions_may_be_equal_or_long(stage: Stage) -> None:
+async def test_equal_suggestions_and_long_suggestions_are_shown(stage: Stage) -> None:
     offered = ("Hello!", "Hello!", *("w" * 79 + str(number) for number in range(4)))
     small = {"viewport": {"width": 320, "height": 480}}
     async with (
@@ -278,7 +279,7 @@ async def test_suggestions_may_be_equal_or_long(stage: Stage) -> None:
 
 
 @on_stage
-async def test_a_paused_agent_does_not_look_present(stage: Stage) -> None:
+async def test_the_status_shows_that_the_agent_is_paused(stage: Stage) -> None:
     async with stage.serve(host, title="Elske") as served, stage.open(served.address) as page:
         status = page.locator(".status")
         await expect(status).to_have_text("here")
@@ -294,7 +295,7 @@ async def test_a_paused_agent_does_not_look_present(stage: Stage) -> None:
 
 
 @on_stage
-async def test_a_frozen_server_does_not_look_present(stage: Stage) -> None:
+async def test_the_status_shows_that_the_server_does_not_respond(stage: Stage) -> None:
     async with stage.serve(host, title="Elske") as served, stage.open("about:blank") as page:
         await page.clock.install()
         frozen = False
@@ -316,7 +317,7 @@ async def test_a_frozen_server_does_not_look_present(stage: Stage) -> None:
 
 
 @on_stage
-async def test_only_the_lines_near_the_view_are_in_the_page_of_five_thousand_lines(stage: Stage) -> None:
+async def test_of_five_thousand_lines_the_page_holds_only_those_near_the_view(stage: Stage) -> None:
     async with stage.serve(host, title="Elske") as served, stage.open(served.address) as page:
         await said(page, "Good evening.")
         (session,) = served.sessions
@@ -339,7 +340,7 @@ async def test_only_the_lines_near_the_view_are_in_the_page_of_five_thousand_lin
                 f"(before) => ({place})(document.querySelector('[role=log]')) > before", arg=before
             )
         shown = await seen(page)
-        assert 1 < len(shown) == shown[-1] - shown[0] + 1  # no gap in what is in view
+        assert 1 < len(shown) == shown[-1] - shown[0] + 1  # the lines in view have no gap
         session.utter("Something new.")
         await expect(page.get_by_role("button", name="Newest")).to_be_visible()
         await page.mouse.move(300, 300)
@@ -354,7 +355,7 @@ async def test_only_the_lines_near_the_view_are_in_the_page_of_five_thousand_lin
 
 
 @on_stage
-async def test_lines_in_view_stay_where_they_are_as_others_come_and_go(stage: Stage) -> None:
+async def test_scrolling_up_does_not_make_the_lines_in_view_jump(stage: Stage) -> None:
     async with stage.serve(host, title="Elske") as served, stage.open(served.address) as page:
         await said(page, "Good evening.")
         (session,) = served.sessions
@@ -363,7 +364,7 @@ async def test_lines_in_view_stay_where_they_are_as_others_come_and_go(stage: St
         await expect(lines(page).last).to_contain_text("Line 399")
         await page.mouse.move(300, 300)
         first = (await seen(page))[0]
-        while first > 100:  # upwards, where heights are still guesses
+        while first > 100:  # scroll up to lines whose heights the page has only estimated
             await page.mouse.wheel(0, -300)
             await page.wait_for_function(
                 "(first) => [...document.querySelectorAll('.line')].some((line) => line.textContent.includes("
@@ -372,7 +373,7 @@ async def test_lines_in_view_stay_where_they_are_as_others_come_and_go(stage: St
             )
             shown = await seen(page)
             assert shown[-1] - shown[0] + 1 == len(shown)
-            assert first - shown[0] < 30  # it moved by a wheel's turn, not more
+            assert first - shown[0] < 30  # the view moved by one turn of the wheel, not more
             first = shown[0]
 
 
@@ -392,7 +393,7 @@ async def test_on_a_phone_the_agents_name_is_not_cut(stage: Stage) -> None:
     async with Server(agent, inside="board/") as served, stage.open(served.address, **PHONE) as page:
         await expect(page.get_by_role("link", name="Look inside")).to_be_in_viewport(ratio=1)
         await expect(page.get_by_role("button", name="Leave")).to_be_in_viewport(ratio=1)
-        await expect(page.get_by_text("here", exact=True)).to_be_attached()  # for screen readers
+        await expect(page.get_by_text("here", exact=True)).to_be_attached()  # hidden, but for screen readers
         name = page.get_by_role("heading", name="Ravestate")
         assert await name.evaluate("(name) => name.scrollWidth <= name.clientWidth")
 
@@ -408,7 +409,7 @@ async def test_on_a_phone_a_long_unsent_text_fits(stage: Stage) -> None:
 
 
 @on_stage
-async def test_a_text_that_is_too_long_is_not_cut(stage: Stage) -> None:
+async def test_a_text_that_is_too_long_stays_in_the_field(stage: Stage) -> None:
     async with stage.serve(host, title="Elske") as served, stage.open(served.address) as page:
         await said(page, "Good evening.")
         field, text = page.get_by_label("What you say to Elske"), "word " * 2_000 + "end"
@@ -422,7 +423,7 @@ async def test_a_text_that_is_too_long_is_not_cut(stage: Stage) -> None:
 
 
 @on_stage
-async def test_a_refused_text_is_not_sent_again_and_again(stage: Stage) -> None:
+async def test_a_text_that_the_server_refuses_is_not_sent_again(stage: Stage) -> None:
     async with (
         stage.serve(host, title="Elske") as served,
         stage.open(served.address, complaints=True) as page,
@@ -440,10 +441,10 @@ async def test_a_refused_text_is_not_sent_again_and_again(stage: Stage) -> None:
 
 
 @on_stage
-async def test_two_windows_of_one_conversation_show_the_same(stage: Stage) -> None:
+async def test_two_windows_of_one_conversation_show_the_same_messages(stage: Stage) -> None:
     async with stage.serve(host, title="Elske") as served, stage.open(served.address) as page:
         await said(page, "Good evening.")
-        async with page.expect_popup() as opened:  # it begins with what this window remembers
+        async with page.expect_popup() as opened:  # the new window gets a copy of this window's storage
             await page.evaluate("window.open(location.href)")
         other = await opened.value
         await said(other, "Good evening.")
@@ -512,7 +513,7 @@ async def test_the_page_does_not_scroll_while_the_visitor_reads_further_up(stage
 
 
 @on_stage
-async def test_in_a_long_conversation_only_the_log_scrolls_and_its_end_shows(stage: Stage) -> None:
+async def test_in_a_long_conversation_only_the_log_scrolls_and_its_last_line_is_visible(stage: Stage) -> None:
     async with stage.serve(host, title="Elske") as served, stage.open(served.address, **PHONE) as page:
         await said(page, "Good evening.")
         for number in range(12):

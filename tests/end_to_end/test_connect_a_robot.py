@@ -1,4 +1,4 @@
-"""The how-to "Connect a robot": the test types its commands, and begins in an empty folder."""
+"""The how-to "Connect a robot": run all its commands, beginning in an empty folder."""
 
 import contextlib
 import json
@@ -24,11 +24,11 @@ ROOT = Path(__file__).parents[2]
 PAGE = ROOT / "docs" / "how-to" / "connect-a-robot.md"
 EXTRAS = tomllib.loads((ROOT / "pyproject.toml").read_text())["project"]["optional-dependencies"]
 STAYS = ("ravestate robot", "ravestate run")
-"""The beginnings of commands that run until Ctrl-C."""
+"""Commands that begin like this run until Ctrl-C."""
 
 
 class Reader:
-    """Types the commands of a page into a shell, and reads the output."""
+    """Runs the commands of a page as a reader would, and checks their output."""
 
     def __init__(self, folder: Path, capture: pytest.CaptureFixture[str], start_master: Callable[[], None]) -> None:
         self.folder = folder
@@ -37,7 +37,7 @@ class Reader:
         self._running: list[subprocess.Popen[str]] = []
 
     def type(self, command: str, shown: list[str]) -> str:
-        """Run a command; assert that it shows these lines; return its output."""
+        """Run a command, check that its output has these lines, and return the output."""
         if command.startswith("ravestate robot"):
             command += " --port 0"
         if command.startswith(STAYS):
@@ -76,7 +76,7 @@ class Reader:
         return said
 
     def end(self) -> None:
-        """Press Ctrl-C, and check that everything ends cleanly."""
+        """End the running commands as Ctrl-C does, and check that they end cleanly."""
         while self._running:
             process = self._running.pop()
             process.send_signal(signal.SIGINT)
@@ -92,14 +92,14 @@ class Reader:
 @pytest.fixture
 def reader(tmp_path: Path, capsys: pytest.CaptureFixture[str], monkeypatch: pytest.MonkeyPatch) -> Iterator[Reader]:
     network = Ros1()
-    end(network.master)  # no master runs before `ros check`
+    end(network.master)  # there is no master until `ros check`
     variables = {
         **network.environment, "PYTHONPATH": str(ROOT / "src"), "ROS_DOMAIN_ID": str(1 + (os.getpid() + 50) % 100),
         "RAVESTATE_ROBOYIO_BUS": "127.0.0.1:0",
     }  # fmt: skip
     for name, value in variables.items():
         monkeypatch.setenv(name, value)
-    # The patrol waits for nodes that are not there.
+    # Look often enough to find all nodes on a busy machine. The nodes of the patrol never appear.
     monkeypatch.setattr("ravestate.modules.platform.ros.checking.LOOKS", 12)
     made = Reader(tmp_path, capsys, network.start_master)
     before = set(sys.modules)
@@ -113,7 +113,7 @@ def reader(tmp_path: Path, capsys: pytest.CaptureFixture[str], monkeypatch: pyte
 
 @contextlib.contextmanager
 def speaking(address: str) -> Iterator[threading.Event]:
-    """Stand to the left of the robot and speak, again and again; the event is set once it has turned and answered."""
+    """Repeat a question from the left of the robot. The event is set when the robot has turned and answered."""
     answered, enough = threading.Event(), threading.Event()
 
     def speak() -> None:

@@ -1,4 +1,4 @@
-"""The sample conversations in the paper's appendix, and rules for any conversation with the complete agent."""
+"""The sample conversations of the paper's appendix, and properties of all conversations with the complete agent."""
 
 from __future__ import annotations
 
@@ -10,7 +10,7 @@ from end_to_end.conversation import WORDS, Conversation, spoken_by
 
 
 @pytest.mark.parametrize("backend", ["auto", "listen"])
-def test_example_1_has_small_talk_and_a_question_of_fact(tmp_path: Path, backend: str) -> None:
+def test_example_1_has_small_talk_and_questions_of_fact(tmp_path: Path, backend: str) -> None:
     with Conversation(tmp_path, {"wildtalk": {"backend": backend}}) as talk:
         assert spoken_by(talk.say("will it rain today")) == ["wildtalk"]
         assert spoken_by(talk.say("know if it's gonna rain today")) == ["wildtalk"]
@@ -20,7 +20,7 @@ def test_example_1_has_small_talk_and_a_question_of_fact(tmp_path: Path, backend
         assert (answer.module, "Lima" in answer.text) == ("genqa", True)
 
 
-def test_in_example_2_the_agent_asks_stores_the_answer_and_knows_it_after_a_restart(tmp_path: Path) -> None:
+def test_in_example_2_the_agent_asks_a_question_and_remembers_the_answer(tmp_path: Path) -> None:
     with Conversation(tmp_path, {"persqa": {"topics": ["home"], "turns": 0}}) as talk:
         assert spoken_by(talk.say("what is your favorite animal")) in (["genqa"], ["agentqa"])
         asked = [line.text for line in talk.silence(60.0) if line.module == "persqa"]
@@ -45,7 +45,7 @@ def test_example_3_has_a_greeting_questions_about_the_agent_and_feelings(tmp_pat
         said = talk.say("What are you up to today", 5.0)
         assert spoken_by(said)[0] == "wildtalk"
         assert "emotion" in spoken_by(said)
-        for text in ("I see", "That sounds good", "It is Sunday"):  # the agent offers nothing in the first six turns
+        for text in ("I see", "That sounds good", "It is Sunday"):  # the agent makes no offers in the first six turns
             talk.say(text)
         assert "agentqa" in spoken_by(talk.silence(120.0))
         assert spoken_by(talk.say("How old are you?"))[:1] == ["agentqa"]
@@ -66,7 +66,7 @@ def test_every_utterance_gets_exactly_one_answer(tmp_path: Path) -> None:
             assert len(talk.say(text, 1.0)) == 1, text
 
 
-def test_odd_inputs_do_not_stop_the_talk(tmp_path: Path) -> None:
+def test_odd_inputs_do_not_stop_the_conversation(tmp_path: Path) -> None:
     odd = (
         "x" * 100_000,
         "🦊🦊🦊",

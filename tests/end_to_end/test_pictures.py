@@ -1,4 +1,4 @@
-"""The documentation's pictures of the page. `PICTURES=docs/pictures pytest ...` renews them."""
+"""The documentation's picture of the chat page. To renew it, run `PICTURES=docs/pictures pytest ...`."""
 
 import os
 import struct

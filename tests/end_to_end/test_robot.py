@@ -1,4 +1,7 @@
-"""The stand-in robot's page, and its pictures for the documentation (`PICTURES=docs/pictures pytest ...` renews them)."""
+"""The page of the stand-in robot, and its pictures for the documentation.
+
+To renew the pictures, run `PICTURES=docs/pictures pytest ...`.
+"""
 
 import contextlib
 import os
@@ -63,7 +66,7 @@ async def test_a_visitor_talks_with_the_robot(stage: Stage, tmp_path: Path) -> N
             await expect(face).to_have_attribute("data-face", "happy")
             await expect(face).to_have_attribute("data-yaw", "0.50")
             await expect(page.locator(".heard")).to_have_text("You: Hello, Roboy!")
-            await page.wait_for_timeout(400)  # until the face has changed
+            await page.wait_for_timeout(400)  # let the face finish its change
             await page.screenshot(path=folder / "robot.png")
             assert context.read(rawio.input) == "Hello, Roboy!"
             await page.get_by_role("button", name="Come into view").click()
@@ -71,7 +74,7 @@ async def test_a_visitor_talks_with_the_robot(stage: Stage, tmp_path: Path) -> N
             await expect(page.locator("svg[role=img] rect[rx='13']")).to_have_count(1)  # the waving arm
             context.emit(emotion.surprised)
             await expect(face).to_have_attribute("data-face", "surprised")
-            await page.wait_for_timeout(500)  # until the arm is up
+            await page.wait_for_timeout(500)  # let the arm rise
             await page.screenshot(path=folder / "robot-waves.png")
     for picture in ("robot.png", "robot-waves.png"):
         head = (folder / picture).read_bytes()[:24]

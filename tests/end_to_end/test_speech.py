@@ -1,4 +1,4 @@
-"""A conversation by voice with the real recogniser and voice, in a browser; Raveboard shows it."""
+"""A spoken conversation in a browser, with the real recogniser and voice. Raveboard shows it."""
 
 import os
 import re
@@ -18,7 +18,7 @@ from ravestate.modules.platform.webio.server import Server
 
 QUESTION = "Good evening. How are you today?"
 ANSWER = "I am quite well, thank you. " + "Let me tell you about the hills and the rivers of my country. " * 8
-PATIENCE = 30_000  # milliseconds: models load, and two programs of speech share the processor with the browser
+PATIENCE = 30_000  # milliseconds: models load, and recogniser and voice share the processor with the browser
 
 guide = rs.Module("guide", requires=(rawio,))
 
@@ -30,7 +30,7 @@ async def answer(ctx: rs.RuleContext) -> None:
 
 
 def ask_again_and_again(file: Path) -> Path:
-    """Write the question with ten seconds of silence; the browser plays it in a loop."""
+    """Write a recording of the question and ten seconds of silence. The browser plays it in a loop."""
     with wave.open(str(file), "wb") as sound:
         sound.setnchannels(1)
         sound.setsampwidth(2)
@@ -42,7 +42,7 @@ def ask_again_and_again(file: Path) -> Path:
 
 
 async def point(board: Page, lane: str, words: str) -> None:
-    """Move the pointer along a lane until a tip with these words appears. The board may still be drawing its lanes."""
+    """Move the pointer along a lane until a tooltip with these words appears. The board may still draw its lanes."""
     tip = board.locator(".tip")
     ends = monotonic() + PATIENCE / 1000
     for step in cycle((24, 12, 6, 3)):  # coarse sweeps first: on a busy machine, a lane may move during a slow sweep
@@ -54,17 +54,19 @@ async def point(board: Page, lane: str, words: str) -> None:
         assert canvas is not None
         for x in range(2, round(canvas["width"]), step):
             await board.mouse.move(canvas["x"] + x, name["y"] + name["height"] / 2)
-            await board.evaluate("() => new Promise(requestAnimationFrame)")  # the page draws the tip in its next frame
+            # The page draws the tooltip in its next frame.
+            await board.evaluate("() => new Promise(requestAnimationFrame)")
             if await tip.count() and words in await tip.inner_text():
                 return
-    raise AssertionError(f"no tip in the lane {lane!r} says {words!r}")
+    raise AssertionError(f"no tooltip in the lane {lane!r} has the words {words!r}")
 
 
 @on_stage
 async def test_a_spoken_question_is_answered_and_the_answer_can_be_interrupted(stage: Stage, tmp_path: Path) -> None:
     settings: dict[str, Any] = {
         "webio": {"port": 0, "title": "Elske"},
-        "voiceio": {"model": "tiny.en", "voice": "espeak", "captions": 0},  # captions cost computing time
+        # Captions would take computing time.
+        "voiceio": {"model": "tiny.en", "voice": "espeak", "captions": 0},
     }
     agent = RecordedAgent(voiceio, guide, webio, settings=settings)
     recording = ask_again_and_again(tmp_path / "question.wav")
@@ -88,7 +90,7 @@ async def test_a_spoken_question_is_answered_and_the_answer_can_be_interrupted(s
         context = Host(server).sessions[0].context
         assert context.read(rawio.heard) == cut
 
-        said = page.locator(".line.agent").nth(1)  # the question comes again, and now the visitor presses the button
+        said = page.locator(".line.agent").nth(1)  # the recording asks again, and now the visitor presses the button
         await expect(said).to_contain_text("I am quite well", timeout=PATIENCE)
         await page.get_by_role("button", name="Stop").click()
         await expect(said).to_contain_text("(interrupted)")

@@ -1,4 +1,4 @@
-"""The voice on the page, in a real browser whose microphone is a recording."""
+"""Spoken conversations on the chat page, in a real browser whose microphone plays a recording."""
 
 import contextlib
 import re
@@ -21,7 +21,10 @@ RATE = 16_000
 
 
 def record(file: Path, *parts: float) -> Path:
-    """Write a recording: seconds of voice, or of silence if they are negative, then half a minute of silence."""
+    """Write a recording with half a minute of silence at its end.
+
+    Each part is a number of seconds: voice if it is positive, silence if it is negative.
+    """
     with wave.open(str(file), "wb") as sound:
         sound.setnchannels(1)
         sound.setsampwidth(2)
@@ -32,7 +35,7 @@ def record(file: Path, *parts: float) -> Path:
 
 
 def calls(stage: Stage, recording: Path) -> contextlib.AbstractAsyncContextManager[Browser]:
-    """A browser whose microphone plays a recording once, from the moment when the microphone is turned on."""
+    """Start a browser whose microphone plays a recording once, as soon as the page turns the microphone on."""
     return stage.devices(sound=f"{recording}%noloop")
 
 
@@ -65,7 +68,7 @@ async def test_a_visitor_talks_with_the_agent_by_voice(stage: Stage, tmp_path: P
         await expect(bar(page)).to_contain_text("seconds so far")
         await expect(lines(page)).to_have_text(["You: a sound", f"Elske: {ANSWER}"])
         await expect(bar(page)).to_contain_text("Elske is speaking.")
-        await expect(bar(page)).to_contain_text("The microphone is on.")  # the agent has spoken to the end
+        await expect(bar(page)).to_contain_text("The microphone is on.")  # the agent is no longer speaking
         (session,) = served.sessions
         assert session.context.read(rawio.heard) == ANSWER
         assert session.line.played == pytest.approx(len(ANSWER.split()) * WORD)
@@ -75,7 +78,7 @@ async def test_a_visitor_talks_with_the_agent_by_voice(stage: Stage, tmp_path: P
 
 
 @on_stage
-async def test_a_visitor_interrupts_by_voice_and_by_the_button(stage: Stage, tmp_path: Path) -> None:
+async def test_a_visitor_interrupts_the_agent_by_voice_and_with_the_button(stage: Stage, tmp_path: Path) -> None:
     async with (
         calls(stage, record(tmp_path / "voice.wav", -0.5, 1.0, -2.5, 1.0)) as browser,
         stage.serve(ears, saga, title="Elske") as served,
@@ -95,7 +98,7 @@ async def test_a_visitor_interrupts_by_voice_and_by_the_button(stage: Stage, tmp
 
 
 @on_stage
-async def test_push_to_talk_works_by_pointer_and_by_key(stage: Stage, tmp_path: Path) -> None:
+async def test_push_to_talk_works_with_the_mouse_and_with_a_key(stage: Stage, tmp_path: Path) -> None:
     async with (
         calls(stage, record(tmp_path / "voice.wav", 20.0)) as browser,
         stage.serve(ears, saga, title="Elske") as served,
@@ -104,9 +107,10 @@ async def test_push_to_talk_works_by_pointer_and_by_key(stage: Stage, tmp_path: 
         button = page.get_by_role("button", name="Talk with Elske")
         await button.hover()
         await page.mouse.down()
-        await expect(bar(page)).to_contain_text(re.compile(r"(0\.[6-9]|[1-9]\.\d) seconds so far"))  # a long press
+        # Hold the button for a while.
+        await expect(bar(page)).to_contain_text(re.compile(r"(0\.[6-9]|[1-9]\.\d) seconds so far"))
         await page.mouse.up()
-        await expect(lines(page).nth(0)).to_have_text("You: a sound")  # though the voice goes on
+        await expect(lines(page).nth(0)).to_have_text("You: a sound")  # although the recording continues
         await expect(page.get_by_role("button", name="Hold to talk")).to_have_attribute("aria-pressed", "false")
         await page.get_by_role("button", name="Stop").click()
         await page.get_by_role("button", name="Hold to talk").focus()
@@ -142,7 +146,7 @@ async def test_on_a_phone_every_button_is_large_enough_for_a_finger(stage: Stage
 
 
 @on_stage
-async def test_in_the_background_the_microphone_is_off(stage: Stage, tmp_path: Path) -> None:
+async def test_the_microphone_goes_off_when_the_page_goes_to_the_background(stage: Stage, tmp_path: Path) -> None:
     async with (
         calls(stage, record(tmp_path / "voice.wav")) as browser,
         stage.serve(ears, story, title="Elske") as served,
@@ -171,7 +175,7 @@ async def test_after_a_lost_connection_the_microphone_is_still_on(stage: Stage, 
 
 
 @on_stage
-async def test_the_window_that_turns_its_microphone_on_takes_it_from_the_other(stage: Stage, tmp_path: Path) -> None:
+async def test_turning_the_microphone_on_in_a_window_turns_it_off_in_the_other(stage: Stage, tmp_path: Path) -> None:
     async with (
         calls(stage, record(tmp_path / "voice.wav")) as browser,
         stage.serve(ears, story, title="Elske") as served,
@@ -201,13 +205,13 @@ async def test_a_visitor_can_speak_in_the_widget_on_another_site(stage: Stage, t
             chat = page.frame_locator("iframe[title='Ask us']")
             await chat.get_by_role("button", name="Talk with Elske").click()
             await expect(chat.locator(".line")).to_have_text(["You: a sound", f"Elske: {ANSWER}"])
-            await button.click()  # the chat closes, and nobody hears the visitor any more
+            await button.click()  # this closes the chat, so the agent no longer hears the visitor
             await expect(chat.get_by_role("region", name="Voice")).to_have_count(0)
             assert line_of(served).window is None
 
 
 @on_stage
-async def test_the_visitor_refuses_the_microphone(stage: Stage) -> None:
+async def test_a_visitor_who_refuses_the_microphone_gets_advice_and_can_turn_it_on_later(stage: Stage) -> None:
     async with (
         stage.launch("--use-fake-device-for-media-stream", "--deny-permission-prompts") as browser,
         stage.serve(ears, story, title="Elske") as served,
@@ -241,7 +245,7 @@ async def test_over_plain_http_the_page_says_that_it_needs_https(stage: Stage) -
 
 
 @on_stage
-async def test_an_agent_without_ears_has_no_microphone_button(stage: Stage) -> None:
+async def test_the_page_of_an_agent_that_cannot_hear_has_no_microphone_button(stage: Stage) -> None:
     async with stage.serve(host, title="Elske") as served, stage.open(served.address) as page:
         await expect(lines(page)).to_have_text("Elske: Good evening.")
         await expect(page.get_by_role("button", name="Talk with")).to_have_count(0)

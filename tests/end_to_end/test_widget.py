@@ -24,7 +24,7 @@ class Museum:
 
     @contextlib.asynccontextmanager
     async def serve(self) -> AsyncGenerator["Museum"]:
-        """Serve its one page."""
+        """Serve the only page of the site."""
         server = await asyncio.start_server(self._answer, "127.0.0.1", 0)
         async with server:
             self.origin = f"http://localhost:{server.sockets[0].getsockname()[1]}"
@@ -33,7 +33,7 @@ class Museum:
     async def _answer(self, reader: asyncio.StreamReader, writer: asyncio.StreamWriter) -> None:
         await reader.readuntil(b"\r\n\r\n")
         body = (PAGE % self.chat).encode()
-        # As strict as a site may be: neither inline style nor inline script.
+        # A very strict policy: neither inline styles nor inline scripts.
         policy = f"default-src 'none'; script-src {self.chat}; frame-src {self.chat}; img-src data:"
         writer.write(
             f"HTTP/1.1 200 OK\r\ncontent-type: text/html\r\ncontent-length: {len(body)}\r\n"
@@ -101,7 +101,7 @@ async def test_on_a_phone_the_widget_takes_the_whole_screen(stage: Stage) -> Non
 
 
 @on_stage
-async def test_a_site_without_permission_may_not_embed_the_chat_and_learns_why(
+async def test_a_site_without_permission_cannot_embed_the_chat_and_the_console_says_why(
     stage: Stage, caplog: pytest.LogCaptureFixture
 ) -> None:
     async with Museum().serve() as museum, stage.serve(host, title="Elske") as served:

@@ -1,4 +1,4 @@
-"""The complete text agent does nothing twice for an utterance."""
+"""The complete text agent computes nothing twice for one utterance."""
 
 from __future__ import annotations
 
@@ -19,7 +19,7 @@ from ravestate.testing import simulate
 
 @pytest.fixture
 def work(monkeypatch: pytest.MonkeyPatch) -> dict[str, list[Any]]:
-    """Return the texts that the encoder, the parser, the cross-encoder and the normal form are computed for."""
+    """The texts that the encoder, the parser, the cross-encoder and the normal form have processed."""
     done: dict[str, list[Any]] = {"encoded": [], "parsed": [], "compared": [], "normalised": []}
     encode, read, score, normalised = Encoder._encode, Pipeline._read, Reranker.score_pairs, normal._normalised
 
@@ -55,13 +55,13 @@ def test_an_utterance_is_encoded_parsed_and_normalised_once(tmp_path: Path, work
     }
     parts = [getattr(modules, name) for name in COMPLETE]
     with simulate(*parts, settings=settings, seed=1) as agent:
-        agent.say("what do you think of jazz?")  # loads everything
+        agent.say("what do you think of jazz?")  # this first utterance loads the models
         for done in work.values():
             done.clear()
         said = len(agent.said)
         agent.say("do you like chess?")
         assert len(agent.said) > said
-    assert work["encoded"] == [["do you like chess"]]  # one run for all matchers of all modules
+    assert work["encoded"] == [["do you like chess"]]  # one call of the encoder for the matchers of all modules
     assert work["parsed"] == ["Do you like chess?"]
     assert work["compared"] == []  # a question about the agent needs no document
     assert len(work["normalised"]) == len(set(work["normalised"]))

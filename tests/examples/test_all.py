@@ -1,4 +1,4 @@
-"""Every example fits on a page, says what it shows, and has no faults and no rule that cannot run."""
+"""Every example is short, says how to start it, and has no faults and no rule that can never run or win."""
 
 import ast
 import inspect

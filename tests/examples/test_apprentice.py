@@ -1,4 +1,4 @@
-"""The apprentice adds rules to a running context, and retires them again."""
+"""The apprentice adds rules to a running context, and retires them later."""
 
 import ravestate as rs
 from examples.loading import example
@@ -14,19 +14,19 @@ def answers(sim, *lines: str) -> list[str]:
     return sim.said
 
 
-def test_a_word_is_learnt_and_forgotten() -> None:
+def test_the_apprentice_learns_and_forgets_an_answer_to_a_word() -> None:
     with simulate(apprentice) as sim:
         said = answers(sim, "Ping", "When I say ping, answer Pong!", "Ping", "Forget ping.", "Ping")
         assert said == [PUZZLED, "Understood.", "Pong!", "ping is forgotten.", PUZZLED]
 
 
-def test_a_forgotten_word_may_be_learnt_anew() -> None:
+def test_the_apprentice_can_learn_a_forgotten_word_again() -> None:
     with simulate(apprentice) as sim:
         answers(sim, "When I say ping, answer one", "Forget ping", "When I say ping, answer two")
         assert answers(sim, "ping")[-1] == "two"
 
 
-def test_another_context_has_learnt_nothing() -> None:
+def test_a_rule_learnt_in_one_context_is_unknown_in_another_context() -> None:
     policy = rs.compile(apprentice)
     with simulate(policy) as first:
         answers(first, "When I say ping, answer pong", "ping")

@@ -1,9 +1,8 @@
 """The commands in the documentation print the output that the documentation shows.
 
-In a `console` block, a line that begins with `$ ` is a command. The next lines are its output, in which `...`
-stands for anything. The tests run the commands of Ravestate and Python, in a folder with the files that
-the page has shown so far. A block with the title `hello.py` makes a file, and a block with the title
-`hello.py, continued` adds to it.
+In a `console` block, a line that begins with `$ ` is a command. The lines after it are its output, in which `...`
+matches any text. The tests run the commands in a folder with the files that the page has shown so far. A block with
+the title `hello.py` creates this file, and a block with the title `hello.py, continued` appends to it.
 """
 
 import doctest
@@ -19,18 +18,18 @@ from repo.snippets import Block, blocks_in, save
 
 ROOT = Path(__file__).parents[2]
 LOADED = re.compile(r"^WARNING ravestate: rule .* blocked the loop .*\n", re.MULTILINE)
-"""A warning that depends on the load of the machine."""
+"""Ignore this warning, because only a busy machine prints it."""
 PAGES = [
     file
     for file in [ROOT / "README.md", *sorted((ROOT / "docs").rglob("*.md"))]
     if any(block.language == "console" for block in blocks_in(file))
-    and file.name != "connect-a-robot.md"  # end_to_end/test_connect_a_robot.py types its commands, in one shell
+    and file.name != "connect-a-robot.md"  # end_to_end/test_connect_a_robot.py runs the commands of this page
 ]
 COMMAND = re.compile(r"(?:printf '[^']*' \| )?(?:\w+=\S+ )*(?:ravestate|python) .*")
 
 
 def shown(block: Block) -> list[tuple[str, str]]:
-    """Yield each command of a block, and the output below it."""
+    """Return each command of a block together with the output below it."""
     found: list[tuple[str, str]] = []
     for line in block.code.splitlines():
         if line.startswith("$ "):
@@ -41,7 +40,7 @@ def shown(block: Block) -> list[tuple[str, str]]:
 
 
 @pytest.mark.parametrize("page", PAGES, ids=lambda page: page.name)
-def test_commands_print_what_is_shown(page: Path, tmp_path: Path) -> None:
+def test_each_command_on_a_page_prints_the_output_below_it(page: Path, tmp_path: Path) -> None:
     path = f"{Path(sys.executable).parent}{os.pathsep}{os.environ['PATH']}"
     environment = {
         **os.environ,

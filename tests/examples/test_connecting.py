@@ -1,4 +1,4 @@
-"""The agents of the documentation: a robot on the built-in bus, and a mouth that runs a program."""
+"""The code of the page "Connect speech or a robot": a robot on the built-in bus, and speech by a program."""
 
 import asyncio
 import os
@@ -20,7 +20,7 @@ PAGE = Path(__file__).parents[2] / "docs" / "how-to" / "connect-speech-or-a-robo
 
 @pytest.fixture(autouse=True)
 def files(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Iterator[None]:
-    """The page's files, ready for import."""
+    """Save the page's files in a folder from which the tests can import them."""
     for block in blocks_in(PAGE):
         save(block, tmp_path)
     monkeypatch.setattr(sys, "path", [str(tmp_path), *sys.path])
@@ -31,7 +31,7 @@ def files(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Iterator[None]:
             del sys.modules[name]
 
 
-def test_a_robot_is_heard_and_told_what_to_say() -> None:
+def test_words_from_the_robot_reach_the_agent_and_its_answers_reach_the_robot() -> None:
     robot, storyteller = import_module("robot"), import_module("storyteller")
     qos = quality(None, depth=10, latch=False)
 
@@ -55,12 +55,12 @@ def test_a_robot_is_heard_and_told_what_to_say() -> None:
     asyncio.run(talk())
 
 
-def test_the_telephone_has_every_method_of_a_line() -> None:
+def test_the_class_telephone_has_every_method_of_rawio_line() -> None:
     telephone = import_module("telephone").Telephone
     assert {name for name in vars(rawio.Line) if not name.startswith("_")} <= set(dir(telephone))
 
 
-def test_a_program_speaks_and_is_silent_when_cancelled(tmp_path: Path) -> None:
+def test_cancelling_say_ends_the_program_that_speaks(tmp_path: Path) -> None:
     devices = import_module("devices")
     heard, begun = tmp_path / "heard", tmp_path / "begun"
     keep = f"import sys, pathlib; pathlib.Path({str(heard)!r}).write_text(sys.stdin.read())"
@@ -77,4 +77,4 @@ def test_a_program_speaks_and_is_silent_when_cancelled(tmp_path: Path) -> None:
         await saying
 
     with pytest.raises(asyncio.CancelledError):
-        asyncio.run(interrupt())  # would hang if the program went on
+        asyncio.run(interrupt())  # would hang if the program did not end

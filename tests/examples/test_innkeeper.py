@@ -1,4 +1,4 @@
-"""The innkeeper: rules choose words, face and hands independently."""
+"""The innkeeper: independent rules choose her words, her face and her hands."""
 
 from examples.loading import example
 from ravestate.testing import simulate
@@ -28,7 +28,7 @@ def test_an_order_is_served() -> None:
         assert state(sim) == ("Here you are.", "neutral", "pour mead")
 
 
-def test_praise_brings_a_smile_and_leaves_the_answer_to_others() -> None:
+def test_praise_makes_the_innkeeper_smile_and_another_rule_answers() -> None:
     with simulate(inn) as sim:
         sim.say("What a lovely inn.")
         assert state(sim) == ("If you say so. Ale, mead or water?", "smiling", "wipe the counter")
@@ -38,5 +38,5 @@ def test_the_innkeepers_frown_fades_after_a_while() -> None:
     with simulate(inn, settings={"idle": {"bored_after": 4, "answer_time": 12}}) as sim:
         sim.say("What an awful inn.")
         assert sim.read(inn.face) == "frowning"
-        sim.advance(20)  # the innkeeper has asked something, and waits for the answer
+        sim.advance(20)  # meanwhile, the innkeeper waits for an answer to her question
         assert sim.read(inn.face) == "neutral"

@@ -1,4 +1,4 @@
-"""The museum guide: words and a gesture are answered together, in virtual time."""
+"""The museum guide answers words and a gesture together."""
 
 import pytest
 
@@ -9,7 +9,7 @@ museum = example("museum_guide")
 
 
 @pytest.mark.parametrize("gesture_first", [True, False])
-def test_words_and_a_gesture_are_answered_once_whichever_comes_first(gesture_first: bool) -> None:
+def test_words_and_a_gesture_get_one_answer_whichever_comes_first(gesture_first: bool) -> None:
     with simulate(museum) as sim:
         acts = [lambda: sim.say("What is this?"), lambda: sim.emit(museum.pointed, "pearl")]
         first, second = reversed(acts) if gesture_first else acts
@@ -21,7 +21,7 @@ def test_words_and_a_gesture_are_answered_once_whichever_comes_first(gesture_fir
         assert len(sim.said) == 1
 
 
-def test_words_alone_are_answered_when_the_patience_is_over() -> None:
+def test_words_without_a_gesture_are_answered_after_the_patience() -> None:
     with simulate(museum) as sim:
         sim.say("Where am I?")
         sim.advance(0.59)
@@ -30,13 +30,13 @@ def test_words_alone_are_answered_when_the_patience_is_over() -> None:
         assert len(sim.said) == 1
 
 
-def test_the_head_turns_at_once() -> None:
+def test_the_head_turns_at_once_to_the_picture_that_the_visitor_points_at() -> None:
     with simulate(museum) as sim:
         sim.emit(museum.pointed, "delft")
         assert sim.read(museum.gaze) == "delft"
 
 
-def test_the_scene_plays(capsys: pytest.CaptureFixture[str]) -> None:
+def test_the_script_prints_each_answer_with_its_time(capsys: pytest.CaptureFixture[str]) -> None:
     museum.main()
     told = capsys.readouterr().out.splitlines()
     assert [line.split(",")[0] for line in told] == ["0.3 s", "10.9 s"]

@@ -1,4 +1,4 @@
-"""The pictures of the documentation are up to date with the code on the pages."""
+"""The generated pictures of the documentation match the code on its pages."""
 
 import importlib.util
 import sys
@@ -17,7 +17,7 @@ def pictures(monkeypatch: pytest.MonkeyPatch) -> ModuleType:
     assert spec is not None
     assert spec.loader is not None
     module = importlib.util.module_from_spec(spec)
-    monkeypatch.setitem(sys.modules, "pictures", module)  # dataclasses look up the module there
+    monkeypatch.setitem(sys.modules, "pictures", module)  # the decorator of dataclasses looks the module up there
     spec.loader.exec_module(module)
     return module
 

@@ -1,4 +1,4 @@
-"""The quiz master: a loop of prompts, ended by an answer."""
+"""The quiz master repeats a question until an answer comes."""
 
 from examples.loading import example
 from ravestate.testing import simulate
@@ -10,14 +10,14 @@ def asked(sim) -> int:
     return sim.fired.count("quiz:ask")
 
 
-def test_in_silence_the_question_is_repeated() -> None:
+def test_the_question_is_repeated_if_the_user_is_silent() -> None:
     with simulate(quiz) as sim:
         assert sim.said == ["Which planet is nearest to the sun?"]
         sim.advance(50)
-        assert asked(sim) == 5  # every 10 s, and 1 s of patience for an answer each time
+        assert asked(sim) == 5  # 10 s until each repetition, and 1 s of patience
 
 
-def test_an_answer_ends_the_loop() -> None:
+def test_an_answer_ends_the_repetition() -> None:
     with simulate(quiz) as sim:
         sim.advance(9)
         sim.say("Mercury, of course.")
@@ -26,7 +26,7 @@ def test_an_answer_ends_the_loop() -> None:
         assert asked(sim) == 1
 
 
-def test_a_wrong_answer_opens_the_question_once_more() -> None:
+def test_after_a_wrong_answer_the_user_may_try_again() -> None:
     with simulate(quiz) as sim:
         sim.say("Venus")
         sim.say("Mercury")

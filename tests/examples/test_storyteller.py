@@ -1,4 +1,4 @@
-"""The storyteller: a listener interrupts the story, and it continues at the same place."""
+"""The storyteller: the user interrupts the story, and later it continues at the same place."""
 
 from examples.loading import example
 from ravestate.testing import simulate

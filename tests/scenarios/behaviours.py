@@ -1,6 +1,6 @@
-"""The ten behaviours that a reader should be able to check. Each is written once, and can be played in two ways.
+"""Ten behaviours of an agent, which run both on the bare engine and on the runtime.
 
-`play` begins a story: `Driver` plays on the bare engine, `simulate` on the runtime.
+The argument `play` of each function is `Driver` for the bare engine, or `simulate` for the runtime.
 """
 
 from __future__ import annotations
@@ -22,7 +22,7 @@ Play = Callable[..., Any]
 
 
 def talker(m: rs.Module, name: str, when: rs.Condition, *, hears: bool = True, **options: Any) -> None:
-    """Declare a rule that says its own name and, if it hears the user, the input."""
+    """Declare a rule that says its own name and, if `hears`, also the user's input."""
 
     @m.rule(when=when, writes=rawio.output, name=name, **options)
     async def talk(ctx: Any) -> None:
@@ -32,7 +32,7 @@ def talker(m: rs.Module, name: str, when: rs.Condition, *, hears: bool = True, *
 def classifier(
     m: rs.Module, signal: rs.Signal[str], word: str, *, takes: Callable[[str], float] = lambda text: 0.0
 ) -> None:
-    """Declare a rule that, after a few seconds, raises a signal for an utterance with a certain word."""
+    """Declare a rule that raises a signal if the input contains `word`. The rule runs for `takes(input)` seconds."""
 
     @m.rule(when=rawio.input.changed, emits=signal, name=f"Find{signal.name.split(':')[1].title()}")
     async def classify(ctx: Any) -> None:
@@ -44,7 +44,7 @@ def classifier(
 
 
 def dialogue(takes: float = 0.0) -> tuple[rs.Module, rs.Signal[str]]:
-    """Declare the rules `Question`, `Qa` and `Wildtalk`."""
+    """Declare the rules `FindQuestion`, `Qa` and `Wildtalk`."""
     m = rs.Module("m", requires=[rawio])
     question = m.signal("question", payload=str)
     classifier(m, question, "?", takes=lambda text: takes)
@@ -54,7 +54,7 @@ def dialogue(takes: float = 0.0) -> tuple[rs.Module, rs.Signal[str]]:
 
 
 def runs_of(sim: Any, rule: str) -> list[float]:
-    """Return when a rule began to run (seconds)."""
+    """Return the times at which a rule began to run (seconds)."""
     return [round(r.time, 6) for r in sim.trace if isinstance(r, Started) and r.rule == f"m:{rule}"]
 
 
@@ -79,9 +79,8 @@ def question(play: Play) -> None:
         assert sim.said == ["PersonalQa", "Qa", "Shy"]
 
 
-def wildtalk_waits_but_not_a_moment_too_long(play: Play) -> None:
-    """2. To a statement, `Wildtalk` answers in the instant in which `Question` ends. To a question, `Qa` alone
-    answers."""
+def wildtalk_waits_only_until_the_classifier_ends(play: Play) -> None:
+    """2. `Wildtalk` answers a statement as soon as `FindQuestion` has ended. Only `Qa` answers a question."""
     for takes in (0.0, 0.7):
         m, _ = dialogue(takes)
         with play(m) as sim:
@@ -120,7 +119,7 @@ def qa_resigns(play: Play) -> None:
 
 
 def slow_cause(play: Play) -> None:
-    """4. The classifier takes 2 s: `Wildtalk` waits, `core:pressure` is true, and a filler may speak."""
+    """4. While the classifier runs for 2 s, `Wildtalk` waits, `core:pressure` is true, and a filler may speak."""
     m, _ = dialogue(takes=2.0)
     talker(m, "Filler", rs.pressure.true.min_age(0.8), hears=False, background=True)
     for text, answer in (
@@ -141,7 +140,7 @@ def slow_cause(play: Play) -> None:
 
 
 def fusion(play: Play) -> None:
-    """5. `point & speech` beats `speech` if a gesture comes 300 ms later; without one, `speech` fires after the
+    """5. `Fused` answers if a gesture comes 300 ms after the words. Without a gesture, `Speech` answers after the
     patience."""
     for patience, own in ((1.0, None), (2.5, None), (1.0, 0.4)):
         m = rs.Module("m", requires=[rawio])
@@ -163,8 +162,8 @@ def fusion(play: Play) -> None:
 
 
 def prompt_loop(play: Play) -> None:
-    """6. In silence, the agent asks again every 10 s (+ patience). After an answer at 9 s, only `Answered` fires,
-    once."""
+    """6. In silence, the agent asks again 10 s plus the patience after each prompt. After an answer, only `Answered`
+    fires, and only once."""
     m = rs.Module("m", requires=[rawio])
     prompted = m.signal("prompted")
 
@@ -184,7 +183,7 @@ def prompt_loop(play: Play) -> None:
         sim.say("Well...")
         sim.advance(100.0)
         assert sim.said == ["Prompt"] + ["PromptAgain"] * 4 + ["Answered: Well..."]
-    for moment in (9.0, 10.5):  # at 10.5 s the next prompt is due, but waits with patience
+    for moment in (9.0, 10.5):  # at 10.5 s, the next prompt is ready, but waits with patience
         with play(m) as sim:
             sim.advance(moment)
             sim.say("Fine.")
@@ -194,7 +193,7 @@ def prompt_loop(play: Play) -> None:
 
 
 def two_inputs_at_once(play: Play) -> None:
-    """7. Two inputs at once are two causal groups: both are answered, in order, each once."""
+    """7. Two simultaneous inputs are two causal groups. Each gets one answer, in the order of the inputs."""
     for takes in (0.0, 0.7):
         m, _ = dialogue(takes)
         for texts in (
@@ -216,12 +215,12 @@ def two_inputs_at_once(play: Play) -> None:
 
 
 def answers(texts: tuple[str, ...]) -> list[str]:
-    """Return the answers, in order: to questions by `Qa`, to others by `Wildtalk`."""
+    """Return the expected answers, in order: those of `Qa` to questions, and those of `Wildtalk` to other inputs."""
     return [f"{'Qa' if text.endswith('?') else 'Wildtalk'}: {text}" for text in texts]
 
 
 def burst(play: Play) -> None:
-    """8. 10,000 spikes of one signal within a second are each handled once, and no live object is left."""
+    """8. Each rule handles each of 10,000 spikes within a second exactly once. No engine object stays alive."""
     m = rs.Module("m")
     tick, count = m.signal("tick", payload=int), m.slot("count", 0)
     quick: list[int] = []
@@ -255,13 +254,14 @@ def burst(play: Play) -> None:
 
 
 def live_objects() -> int:
-    """Count the live spikes, activations and groups."""
+    """Count the spikes, activations and groups that Python still keeps."""
     gc.collect()
-    return sum(type(one) in (Spike, Activation, Group) for one in gc.get_objects())  # isinstance runs their code
+    # `isinstance` could run the code of an object.
+    return sum(type(one) in (Spike, Activation, Group) for one in gc.get_objects())
 
 
 def independent_writers(play: Play) -> None:
-    """9. `Emotion` (face) runs beside `Qa` (output) for the same input."""
+    """9. For the same input, `Emotion`, which writes `face`, runs at the same time as `Qa`, which writes the output."""
     m, question = dialogue()
     face = m.slot("face", "")
 
@@ -280,7 +280,7 @@ def independent_writers(play: Play) -> None:
 
 
 def cooldown(play: Play) -> None:
-    """10. Two rules on `bored` with weights 1.2 and 1.0 and cooldowns take turns."""
+    """10. Two rules for `bored` take turns, because each has a cooldown. The rule with the greater weight begins."""
     m = rs.Module("m", requires=[rawio])
     bored = m.signal("bored")
     talker(m, "Hum", bored, hears=False, weight=1.0, cooldown=30.0)
@@ -294,6 +294,6 @@ def cooldown(play: Play) -> None:
 
 
 BEHAVIOURS = [
-    question, wildtalk_waits_but_not_a_moment_too_long, qa_resigns, slow_cause, fusion, prompt_loop,
+    question, wildtalk_waits_only_until_the_classifier_ends, qa_resigns, slow_cause, fusion, prompt_loop,
     two_inputs_at_once, burst, independent_writers, cooldown,
 ]  # fmt: skip

@@ -1,4 +1,4 @@
-"""Rewrite the assertions of the shared stories, so that they show the compared values."""
+"""Let pytest rewrite the assertions of the shared behaviours, so that a failure shows the compared values."""
 
 import pytest
 

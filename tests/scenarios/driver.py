@@ -1,7 +1,8 @@
-"""A small synchronous shell around a bare engine: it performs the effects, in virtual time.
+"""A small synchronous shell around a bare engine. It performs the engine's effects in virtual time.
 
-It has no loop and no thread: it steps the coroutine of an ``async`` rule by hand, and wakes a sleeping rule when
-virtual time gets there. Its interface is that of `ravestate.testing.Simulation`, so both can play one story.
+It has no loop and no thread. It steps the coroutine of an ``async`` rule itself, and wakes a sleeping rule when
+virtual time reaches the end of the sleep. It has the same methods as `ravestate.testing.Simulation`, so a test can use
+either.
 """
 
 from __future__ import annotations
@@ -26,16 +27,16 @@ OUTPUT = rawio.output.changed.name
 
 
 class Driver:
-    """An engine, the rule functions that it has called, and the time.
+    """A bare engine, the running rule functions, and virtual time.
 
     Attributes:
         engine: The bare engine.
         now: Virtual time (seconds).
-        log: All calls of the engine, in order: the verb, the event if there was one, and the time.
+        log: All calls of the engine, in order: the name of the method, the event or None, and the time (seconds).
         effects: All effects of the engine.
         trace: All records of the trace.
         fired: The rules that ran and did not resign, in the order in which they finished.
-        failures: The failures of rules: (name of the rule, exception).
+        failures: The failures of rules, each as the name of the rule and the exception.
         said: The values written to ``rawio.output``, in order.
     """
 
@@ -69,7 +70,7 @@ class Driver:
             coroutine.close()
 
     def say(self, text: str) -> None:
-        """Write ``rawio.input`` from outside."""
+        """Write ``rawio.input`` as a platform would."""
         self.put(rawio.input, text)
 
     def put(self, slot: rs.Slot[Any], value: Any) -> None:
@@ -90,7 +91,7 @@ class Driver:
         self.settle()
 
     def advance(self, seconds: float) -> None:
-        """Let virtual time pass, from one moment at which something is due to the next."""
+        """Let virtual time pass. Stop and settle at each time at which something is due."""
         goal = self.now + seconds
         self.settle()
         while (due := self._next()) <= goal:
@@ -100,7 +101,7 @@ class Driver:
         self._advance()
 
     def settle(self) -> None:
-        """Do all that can be done at this moment."""
+        """Do everything that is due now."""
         while effects := self._asked() or self._due():
             self.effects += effects
             for effect in effects:
@@ -116,12 +117,12 @@ class Driver:
         return snapshot(self.engine)
 
     def receive(self, event: Event) -> None:
-        """Give the engine an event, and perform no effect yet."""
+        """Give the engine an event, but perform no effects yet."""
         self.log.append(("receive", event, self.now))
         self.engine.receive(event, self.now)
 
     def _due(self) -> list[Effect]:
-        """Handle the next thing that is due: the engine's deadlines first, then sleeping rules."""
+        """Advance the engine if a deadline is due; otherwise wake the next sleeping rule. Repeat until there are effects."""
         effects: list[Effect] = []
         while not effects and self._next() <= self.now:
             deadline = self.engine.next_deadline()
@@ -150,7 +151,7 @@ class Driver:
             self._begin(effect)
         elif isinstance(effect, Cancel):
             if effect.run not in self._runs:
-                return  # the run has reported its end meanwhile
+                return  # the run has ended meanwhile
             self._sleepers = [nap for nap in self._sleepers if nap[2] != effect.run]
             self._step(effect.run, asyncio.CancelledError())
         elif isinstance(effect, Spiked):
@@ -163,7 +164,7 @@ class Driver:
     def _begin(self, effect: Run) -> None:
         try:
             result = effect.rule.function(View(self, effect))
-        except Exception as raised:  # a rule may raise anything
+        except Exception as raised:  # a rule may raise any exception
             self._finish(effect.run, raised)
             return
         if iscoroutine(result):
@@ -179,7 +180,7 @@ class Driver:
         except StopIteration as end:
             result = end.value
         except asyncio.CancelledError:
-            result = None  # the engine has cancelled it
+            result = None  # the engine has cancelled the run
         except Exception as raised:
             result = raised
         else:
@@ -202,7 +203,7 @@ class Driver:
 
 
 class View:
-    """The argument of a rule function: the part of `rs.RuleContext` that a bare engine can serve."""
+    """The argument of a rule function. It has those methods of `rs.RuleContext` that need only the engine."""
 
     def __init__(self, driver: Driver, effect: Run) -> None:
         self._driver = driver
@@ -239,7 +240,7 @@ class View:
 
 
 class Nap:
-    """The awaitable of a rule that sleeps: it gives the driver the seconds."""
+    """The awaitable that `View.sleep` returns. Awaiting it passes the seconds to the driver."""
 
     def __init__(self, seconds: float) -> None:
         self.seconds = seconds

@@ -1,4 +1,4 @@
-"""Endless loops: the simulation names them, bounds them, or prevents them."""
+"""Endless loops and endless waits: an error names a loop, or the engine prevents it."""
 
 import asyncio
 import threading
@@ -9,7 +9,7 @@ import ravestate as rs
 from ravestate.testing import simulate
 
 
-def test_the_error_names_a_loop_without_an_age() -> None:
+def test_the_error_names_the_rule_of_a_loop_without_a_minimum_age() -> None:
     m = rs.Module("m")
     a = m.signal("a")
 
@@ -21,7 +21,7 @@ def test_the_error_names_a_loop_without_an_age() -> None:
         sim.emit(a)
 
 
-def test_a_rule_gated_by_pressure_may_be_kept_waiting() -> None:
+def test_a_rule_that_requires_no_pressure_runs_after_it_has_waited() -> None:
     m = rs.Module("m")
     x, y, out = m.signal("x"), m.signal("y"), m.slot("out", "")
 
@@ -39,7 +39,7 @@ def test_a_rule_gated_by_pressure_may_be_kept_waiting() -> None:
         assert sim.read(out) == "calm"
 
 
-def test_an_apology_that_fails_causes_no_second_apology() -> None:
+def test_a_failure_caused_by_an_apology_causes_no_second_apology() -> None:
     m = rs.Module("m")
     said = m.slot("said", "")
     go = m.signal("go")
@@ -61,7 +61,7 @@ def test_an_apology_that_fails_causes_no_second_apology() -> None:
         assert [rule for rule, _ in sim.failures] == ["m:fail", "m:speak"]
 
 
-def test_more_spikes_do_not_delay_an_interruption_with_an_age() -> None:
+def test_more_spikes_do_not_delay_an_interruption_with_a_minimum_age() -> None:
     m = rs.Module("m")
     go, tick = m.signal("go"), m.signal("tick")
 
@@ -79,7 +79,7 @@ def test_more_spikes_do_not_delay_an_interruption_with_an_age() -> None:
         assert sim.fired == ["m:run"]
 
 
-def test_no_rule_that_a_thread_adds_is_lost() -> None:
+def test_rules_that_plain_functions_add_at_the_same_time_are_all_kept() -> None:
     m, extra = rs.Module("m"), rs.Module("extra")
     go, heard = m.signal("go"), m.collection("heard")
 
@@ -108,7 +108,7 @@ def test_no_rule_that_a_thread_adds_is_lost() -> None:
     assert asyncio.run(main()) == 8
 
 
-def test_a_default_that_cannot_be_copied_is_a_fault() -> None:
+def test_a_slots_default_that_cannot_be_copied_is_a_fault() -> None:
     m = rs.Module("m")
     m.slot("lock", threading.Lock())
     with pytest.raises(rs.DeclarationErrors) as caught:

@@ -1,4 +1,4 @@
-"""``simulate.from_file``: the agent of an agent file, in virtual time."""
+"""``simulate.from_file`` simulates the agent of an agent file."""
 
 import importlib
 import sys
@@ -66,7 +66,7 @@ def test_a_simulation_has_the_modules_and_settings_of_the_file(agent: Path) -> N
         assert sim.fired == ["clerk:greet"]
 
 
-def test_platforms_are_left_out(agent: Path) -> None:
+def test_a_simulation_leaves_out_the_platforms_of_the_file(agent: Path) -> None:
     with simulate.from_file(agent) as sim:
         assert [module.name for module in sim.context.policy.modules] == ["core", "rawio", "clerk"]
 
@@ -81,14 +81,14 @@ def test_settings_in_code_override_the_environment_which_overrides_the_file(
     assert greeting(agent, settings={"clerk": {"greeting": "Ahoy."}}).startswith("Ahoy. ")
 
 
-def test_random_choices_repeat_by_the_seed_of_the_call_or_the_file_or_0(agent: Path) -> None:
+def test_the_seed_comes_from_the_call_or_the_file_or_is_0(agent: Path) -> None:
     usual = greeting(agent)
     assert greeting(agent) == usual == greeting(agent, seed=0)
     agent.write_text(f"{AGENT}\nseed: 7\n", encoding="utf-8")
     assert greeting(agent) == greeting(agent, seed=7) != usual
 
 
-def test_the_slots_are_those_that_the_test_imports(agent: Path) -> None:
+def test_a_test_can_import_the_slots_of_a_module_of_the_file(agent: Path) -> None:
     clerk = importlib.import_module("clerk")
     with simulate.from_file(agent) as sim:
         sim.put(clerk.till, True)
@@ -96,7 +96,7 @@ def test_the_slots_are_those_that_the_test_imports(agent: Path) -> None:
         assert sim.read(rawio.output) == "Your receipt, please."
 
 
-def test_one_message_has_all_mistakes(agent: Path) -> None:
+def test_one_message_lists_all_mistakes_of_the_file(agent: Path) -> None:
     agent.write_text("modules: [rawoi, ./gone.py]\nseed: x\n", encoding="utf-8")
     with pytest.raises(UsageError) as caught:
         simulate.from_file(agent)

@@ -1,4 +1,4 @@
-"""The checks of platforms: a platform in memory passes them, and one with a fault does not."""
+"""The checks for platforms: a platform without faults passes them, and a faulty platform does not."""
 
 import asyncio
 from collections import defaultdict
@@ -11,7 +11,7 @@ from ravestate.testing.platforms import check_answer, check_order, check_restart
 
 
 class InMemory:
-    """The users of a platform in memory, which answers the message `doubled` twice."""
+    """A platform in memory, seen by its users. It answers the message `doubled` twice."""
 
     def __init__(self, doubled: str = "") -> None:
         self._doubled = doubled
@@ -48,7 +48,7 @@ def test_a_platform_without_faults_passes(check: Callable[[Driver], Awaitable[No
 
 
 class Late(InMemory):
-    """A platform whose second answer to a message is late: it comes with the next message."""
+    """A platform that answers the message `doubled` a second time when the next message comes."""
 
     def __init__(self, doubled: str) -> None:
         super().__init__()
@@ -68,7 +68,7 @@ class Late(InMemory):
     ("check", "last"),
     [(check_answer, "x" * 3000), (check_order, "message 11"), (check_users, "count"), (check_restart, "after of emil")],
 )
-def test_a_doubled_last_message_is_a_fault(
+def test_a_check_fails_if_the_last_message_is_answered_twice(
     check: Callable[[Driver], Awaitable[None]], last: str, platform: Callable[[str], InMemory]
 ) -> None:
     async def test() -> None:
@@ -86,7 +86,7 @@ class Silent(InMemory):
         return []
 
 
-def test_an_answer_that_never_comes_is_named(monkeypatch: pytest.MonkeyPatch) -> None:
+def test_the_error_names_the_user_who_gets_no_answer(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr(platforms, "PATIENCE", 0.01)
     with pytest.raises(AssertionError, match=r"ada has not received message 1 within 0\.01 s: see whether the agent"):
         asyncio.run(check_answer(Silent()))

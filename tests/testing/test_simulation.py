@@ -1,7 +1,7 @@
-"""Simulated contexts: the real runtime in virtual time."""
+"""`simulate` runs the real runtime in virtual time."""
 
 import asyncio
-from asyncio import sleep  # a sleep in virtual time costs no real time
+from asyncio import sleep  # sleeps in virtual time, so it takes no real time
 from typing import Any
 
 import pytest
@@ -17,7 +17,7 @@ class Options(rs.Settings):
 
 
 def talk() -> rs.Module:
-    """A module that greets, answers and says goodbye."""
+    """Return a module that greets, answers and says goodbye."""
     module = rs.Module("talk", requires=[rawio], settings=Options)
 
     @module.rule(when=rs.startup, writes=rawio.output)
@@ -40,7 +40,7 @@ def talk() -> rs.Module:
 
 
 def clock() -> tuple[rs.Module, rs.Signal[Any], list[float]]:
-    """A module with one signal, and an empty list of times for its rule."""
+    """Return a module, its only signal, and an empty list in which its rules can note times."""
     module = rs.Module("clock")
     return module, module.signal("go"), []
 
@@ -48,7 +48,7 @@ def clock() -> tuple[rs.Module, rs.Signal[Any], list[float]]:
 # ---------------------------------------------------------------------------------------- what a simulation records
 
 
-def test_said_has_every_output_from_startup_to_the_end() -> None:
+def test_said_lists_every_output_from_startup_to_the_end() -> None:
     with simulate(talk()) as sim:
         assert sim.said == ["hello"]
         sim.say("you")
@@ -58,7 +58,7 @@ def test_said_has_every_output_from_startup_to_the_end() -> None:
     assert sim.said == ["hello", "YOU", "bye"]
 
 
-def test_fired_has_the_rules_that_did_not_resign_in_order_of_finishing() -> None:
+def test_fired_lists_the_rules_that_did_not_resign_in_the_order_of_their_ends() -> None:
     module, go, _ = clock()
 
     @module.rule(when=go)
@@ -80,7 +80,7 @@ def test_fired_has_the_rules_that_did_not_resign_in_order_of_finishing() -> None
         assert sim.fired == ["clock:quick", "clock:slow"]
 
 
-def test_failures_have_the_names_of_their_rules(caplog: pytest.LogCaptureFixture) -> None:
+def test_failures_lists_each_failed_rule_with_its_exception(caplog: pytest.LogCaptureFixture) -> None:
     module, go, _ = clock()
 
     @module.rule(when=rs.startup)
@@ -133,7 +133,7 @@ def test_the_shortcuts_act_on_the_context() -> None:
         assert sim.fired == ["clock:later"]
 
 
-def test_settings_seed_and_patience_are_passed_on() -> None:
+def test_simulate_uses_the_given_settings_and_seed() -> None:
     with simulate(talk(), settings={"talk": {"greeting": "salut"}}) as sim:
         assert sim.said == ["salut"]
     module, go, found = clock()
@@ -148,7 +148,7 @@ def test_settings_seed_and_patience_are_passed_on() -> None:
     assert found[0] == found[1] != found[2]
 
 
-def test_patience_passes_in_virtual_time() -> None:
+def test_simulate_uses_the_given_patience_in_virtual_time() -> None:
     module, go, found = clock()
     point, out = module.signal("point"), module.slot("out", "")
 
@@ -175,7 +175,7 @@ async def nested(depth: int) -> None:
         await nested(depth - 1)
 
 
-def test_every_wait_is_in_virtual_time() -> None:
+def test_every_kind_of_wait_takes_virtual_time() -> None:
     module, go, at = clock()
 
     @module.rule(when=go)
@@ -234,7 +234,7 @@ def test_plain_functions_take_no_virtual_time() -> None:
         assert sim.failures == []
 
 
-def test_plain_functions_take_turns_so_that_runs_repeat() -> None:
+def test_plain_functions_run_one_after_another_in_the_order_of_declaration() -> None:
     module, go, _ = clock()
     inside: list[str] = []
     order: list[str] = []
@@ -252,7 +252,7 @@ def test_plain_functions_take_turns_so_that_runs_repeat() -> None:
         assert order == list("abcdef") and sim.failures == []
 
 
-def test_the_error_names_a_plain_function_that_blocks_time(monkeypatch: pytest.MonkeyPatch) -> None:
+def test_the_error_names_a_plain_function_that_holds_virtual_time_back(monkeypatch: pytest.MonkeyPatch) -> None:
     import threading
 
     from ravestate.testing import virtual_loop
@@ -278,7 +278,7 @@ def test_the_error_names_a_plain_function_that_blocks_time(monkeypatch: pytest.M
 # ---------------------------------------------------------------------------------------- advance, settle
 
 
-def test_advance_settles_before_and_after_and_stops_on_the_second() -> None:
+def test_advance_settles_before_and_after_and_stops_at_the_exact_time() -> None:
     module, go, at = clock()
 
     @module.rule(when=go)
@@ -288,7 +288,7 @@ def test_advance_settles_before_and_after_and_stops_on_the_second() -> None:
 
     with simulate(module) as sim:
         assert sim.now == 0.0
-        sim.context.emit(go)  # without settling
+        sim.context.emit(go)  # does not settle, unlike `sim.emit`
         sim.advance(2)
         assert at == [2.0] and sim.now == 2.0
         sim.advance(0)
@@ -297,7 +297,7 @@ def test_advance_settles_before_and_after_and_stops_on_the_second() -> None:
         assert sim.now == 2.125
 
 
-def test_advance_in_parts_is_advance_at_once() -> None:
+def test_advancing_in_parts_has_the_same_effect_as_advancing_at_once() -> None:
     def times(parts: list[float]) -> list[float]:
         module, go, at = clock()
 
@@ -335,7 +335,7 @@ def test_settle_does_everything_that_is_due_now() -> None:
         assert at == [0.0]
 
 
-def test_time_does_not_run_backwards() -> None:
+def test_advance_refuses_a_negative_time() -> None:
     with simulate() as sim, pytest.raises(ValueError, match=r"advance\(-1\): time does not run backwards"):
         sim.advance(-1)
 
@@ -351,7 +351,7 @@ def test_a_simulation_inside_a_running_loop_is_refused() -> None:
     asyncio.run(main())
 
 
-def test_a_simulation_is_a_context_manager_and_runs_once() -> None:
+def test_a_simulation_can_be_used_only_within_its_with_block_and_only_once() -> None:
     sim = simulate()
     for act in (lambda: sim.advance(1), sim.settle, lambda: sim.now):
         with pytest.raises(rs.EngineError, match="has not started: write"):
@@ -362,7 +362,7 @@ def test_a_simulation_is_a_context_manager_and_runs_once() -> None:
         sim.__enter__()
 
 
-def test_the_message_about_say_without_rawio_names_rawio() -> None:
+def test_say_without_rawio_raises_an_error_that_names_rawio() -> None:
     with (
         simulate() as sim,
         pytest.raises(rs.UndeclaredError, match="no slot rawio:input; add module rawio to the context"),
@@ -370,14 +370,14 @@ def test_the_message_about_say_without_rawio_names_rawio() -> None:
         sim.say("hello")
 
 
-def test_faults_are_raised_before_a_simulation_starts() -> None:
+def test_simulate_raises_declaration_faults_at_once() -> None:
     with pytest.raises(rs.DeclarationErrors):
         simulate(rs.Module("a"), rs.Module("a"))
     with pytest.raises(rs.DeclarationErrors):
         simulate(talk(), settings={"talk": {"greting": "x"}})
 
 
-def test_an_exception_in_the_block_passes_and_everything_is_closed() -> None:
+def test_an_exception_in_the_block_is_raised_after_everything_is_closed() -> None:
     module, go, _ = clock()
     told: list[str] = []
 

@@ -1,8 +1,8 @@
-"""The loop in virtual time."""
+"""The event loop in virtual time."""
 
 import asyncio
 import threading
-from asyncio import sleep  # a sleep in virtual time costs no real time
+from asyncio import sleep  # sleeps in virtual time, so it takes no real time
 from collections.abc import Iterator
 
 import pytest
@@ -28,7 +28,7 @@ def test_the_loop_jumps_from_timer_to_timer(loop: VirtualLoop) -> None:
     assert seen == [("a", 2.0), ("b", 5.0), ("c", 5.0)] and loop.time() == 5.0
 
 
-def test_ready_callbacks_run_before_time_passes(loop: VirtualLoop) -> None:
+def test_all_ready_callbacks_run_before_time_passes(loop: VirtualLoop) -> None:
     seen: list[float] = []
 
     async def steps() -> None:
@@ -41,13 +41,13 @@ def test_ready_callbacks_run_before_time_passes(loop: VirtualLoop) -> None:
     assert seen == [0.0] and task.done()
 
 
-def test_cancelled_timers_do_not_hold_up_the_loop(loop: VirtualLoop) -> None:
+def test_the_loop_skips_cancelled_timers(loop: VirtualLoop) -> None:
     loop.call_later(1, lambda: None).cancel()
     loop.run_to(3)
     assert loop.time() == 3.0
 
 
-def test_running_to_the_past_changes_nothing(loop: VirtualLoop) -> None:
+def test_run_to_with_a_past_time_changes_nothing(loop: VirtualLoop) -> None:
     loop.run_to(3)
     loop.run_to(1)
     assert loop.time() == 3.0
@@ -92,7 +92,9 @@ def test_virtual_time_does_not_pass_while_threads_are_busy(loop: VirtualLoop) ->
     assert seen == [0.0, 1.0]
 
 
-def test_waiting_for_threads_has_a_limit_and_happens_once(loop: VirtualLoop, monkeypatch: pytest.MonkeyPatch) -> None:
+def test_the_loop_waits_for_busy_threads_only_up_to_a_limit_and_only_once(
+    loop: VirtualLoop, monkeypatch: pytest.MonkeyPatch
+) -> None:
     monkeypatch.setattr(virtual_loop, "REAL_LIMIT", 0.001)
     loop.busy = lambda: ["m:one", "m:two"]
     with pytest.raises(TimeoutError, match=r"m:one and m:two kept virtual time waiting for over 0\.001 real seconds"):
@@ -101,15 +103,15 @@ def test_waiting_for_threads_has_a_limit_and_happens_once(loop: VirtualLoop, mon
     assert loop.time() == 1.0
 
 
-def test_a_function_that_computes_may_take_longer_than_one_that_waits(
+def test_the_loop_waits_longer_for_a_function_that_computes_than_for_one_that_waits(
     loop: VirtualLoop, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    """A slow machine must not change the result."""
+    """A function that computes may need longer on a slow machine. This must not change the result."""
     monkeypatch.setattr(virtual_loop, "REAL_LIMIT", 0.001)
     busy, readings = ["m:learn"], 0
 
     def used() -> float:
-        """Read the clock of the processor. At the sixth reading, the function has ended."""
+        """A stand-in for `process_time`: each call adds a second, and the sixth call ends the busy function."""
         nonlocal readings
         readings += 1
         if readings == 6:
@@ -126,7 +128,7 @@ def test_a_function_that_computes_may_take_longer_than_one_that_waits(
         loop.run_to(2)
 
 
-def test_functions_of_asyncio_to_thread_take_no_virtual_time(
+def test_functions_in_asyncio_to_thread_take_no_virtual_time(
     loop: VirtualLoop, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     meet = threading.Barrier(2)
@@ -154,7 +156,7 @@ def test_functions_of_asyncio_to_thread_take_no_virtual_time(
     loop.run_to(6)
 
 
-def test_a_runner_that_closes_waits_for_the_threads_of_the_pool() -> None:
+def test_closing_a_runner_waits_for_the_threads_of_its_pool() -> None:
     begun, over, ended = threading.Event(), threading.Event(), threading.Event()
 
     def wait() -> None:
@@ -165,7 +167,7 @@ def test_a_runner_that_closes_waits_for_the_threads_of_the_pool() -> None:
     async def work() -> None:
         function = asyncio.get_running_loop().run_in_executor(None, wait)
         begun.wait(5)
-        function.cancel()  # its thread goes on
+        function.cancel()  # its thread continues
         threading.Timer(0.05, over.set).start()
 
     with asyncio.Runner(loop_factory=VirtualLoop) as runner:

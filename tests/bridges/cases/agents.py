@@ -32,7 +32,7 @@ talker = rs.Module("talker", requires=[rawio])
     until=rawio.input.changed,
 )
 async def talk(ctx: rs.RuleContext) -> None:
-    """Say three pieces. If the user said "wait", stop in the middle, and never go on."""
+    """Say three pieces. If the user said "wait", hang after the second piece until the rule is cancelled."""
     said = ""
     ctx[rawio.speaking] = True
     try:
@@ -56,7 +56,7 @@ noticed = listener.slot("noticed", 0)
 
 @listener.rule(when=rawio.input.changed, reads=(rawio.heard, captions, noticed), writes=rawio.output)
 async def tell(ctx: rs.RuleContext) -> None:
-    """Say what the agent knows about the user's speech and hearing. Then talk as `talker` does after "wait"."""
+    """Say what the user heard, the newest caption of their speech, and the number of `typing` signals."""
     ctx[rawio.output] = f"heard {ctx[rawio.heard]!r}, captions {ctx[captions]!r}, speech {ctx[noticed]}"
 
 
@@ -83,7 +83,7 @@ counter = rs.Module("counter", requires=[rawio])
 
 @counter.rule(when=rawio.input.changed, reads=rawio.heard, writes=rawio.output)
 async def count(ctx: rs.RuleContext) -> None:
-    """Count in sentences, or say what the user has heard."""
+    """Count in three sentences; if the user asks "what did I hear?", say what they heard."""
     asked = ctx.payload(rawio.input.changed) == "what did I hear?"
     ctx[rawio.output] = f"You heard {ctx[rawio.heard]}" if asked else "One. Two. Three."
 
@@ -126,7 +126,7 @@ leaver = rs.Module("leaver", requires=[rawio])
 
 @leaver.rule(when=rs.startup, writes=rawio.output)
 async def leave(ctx: rs.RuleContext) -> None:
-    """Speak without being asked, and leave."""
+    """Speak without being asked, and end the conversation."""
     await ctx.sleep(0.01)
     ctx[rawio.output] = "I have to go."
     ctx.stop()

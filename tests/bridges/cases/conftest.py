@@ -1,4 +1,4 @@
-"""Each `async` test runs in a loop of its own."""
+"""Run each `async` test in its own event loop."""
 
 import asyncio
 import inspect

@@ -27,7 +27,7 @@ async def session_with(agent: AnyAgent, **options: Any) -> AsyncIterator[AgentSe
 
 
 async def answers(session: AgentSession[None], words: str) -> list[str]:
-    """Say something, and return what the agent says to it."""
+    """Say something as the user; return the agent's answers."""
     result = await session.run(user_input=words)
     return [
         str(event.item.text_content)
@@ -37,14 +37,14 @@ async def answers(session: AgentSession[None], words: str) -> list[str]:
 
 
 def event_of(session: AgentSession[None], name: Any, fits: Callable[[Any], bool] = bool) -> asyncio.Future[Any]:
-    """Return a future of the session's next event with a name that fits."""
+    """Return a future for the session's next event of this name for which `fits` is true."""
     found: asyncio.Future[Any] = asyncio.get_running_loop().create_future()
     session.on(name, lambda event: found.set_result(event) if fits(event) and not found.done() else None)
     return found
 
 
 class Items:
-    """The messages of a session, and a way to wait for the next one of the agent."""
+    """The agent's messages in a session, one after the other."""
 
     def __init__(self, session: AgentSession[None]) -> None:
         self._queue: asyncio.Queue[ChatMessage] = asyncio.Queue()
@@ -61,7 +61,7 @@ class Items:
 # ------------------------------------------------------------------------------------------- answers
 
 
-async def test_the_users_words_are_answered() -> None:
+async def test_the_agent_answers_the_users_words() -> None:
     async with session_with(agents.echo) as session:
         result = await session.run(user_input="hello")
         result.expect.next_event().is_message(role="assistant")
@@ -74,18 +74,18 @@ async def test_an_answer_in_pieces_is_one_message() -> None:
         assert await answers(session, "count") == ["One, two, three."]
 
 
-async def test_a_filler_and_the_answer_are_one_turn() -> None:
+async def test_a_filler_and_the_answer_after_it_are_one_message() -> None:
     async with session_with(agents.two_part) as session:
         assert await answers(session, "what is the capital of Peru?") == ["Let me think. It is Lima."]
 
 
-async def test_a_silent_agent_says_nothing_and_holds_nothing_up() -> None:
+async def test_the_session_does_not_wait_for_an_agent_that_does_not_answer() -> None:
     async with session_with(agents.silent) as session:
         assert await answers(session, "hello") == []
         assert await answers(session, "hello?") == []
 
 
-async def test_instructions_and_old_messages_are_not_the_users_words() -> None:
+async def test_the_agent_answers_neither_instructions_nor_old_messages() -> None:
     history = ChatContext.empty()
     history.add_message(role="user", content="old")
     async with session_with(agents.echo, chat_ctx=history) as session:
@@ -108,7 +108,7 @@ async def test_two_simultaneous_replies_are_not_mixed_up() -> None:
 # ------------------------------------------------------------------------------------------- interruption
 
 
-async def test_an_interruption_ends_the_answer_and_the_rule() -> None:
+async def test_an_interruption_cuts_the_answer_and_cancels_the_rule() -> None:
     context = rs.Context(agents.interrupted)
     async with session_with(context) as session:
         items = Items(session)
@@ -121,11 +121,11 @@ async def test_an_interruption_ends_the_answer_and_the_rule() -> None:
         cut = await items.next()
         assert cut.interrupted
         assert cut.text_content == "One, two, "
-        await context.quiet()  # the rule has ended
+        await context.quiet()  # returns once the rule has ended
         assert await answers(session, "what did I hear?") == ["You heard 'One, two, '"]
 
 
-async def test_the_agent_knows_which_of_its_spoken_words_were_heard() -> None:
+async def test_the_agent_knows_which_of_its_words_the_user_heard() -> None:
     loudspeaker = Loudspeaker()
     async with asyncio.timeout(60), AgentSession[None]() as session:
         session.output.audio = loudspeaker
@@ -134,7 +134,7 @@ async def test_the_agent_knows_which_of_its_spoken_words_were_heard() -> None:
         assert await answers(session, "count") == ["One, two, three."]
         assert (await items.next()).text_content == "One, two, three."
         loudspeaker.most = len("One, two,")
-        handle = session.generate_reply(user_input="count again")  # written at once, and then spoken
+        handle = session.generate_reply(user_input="count again")  # the rule ends at once; speaking takes longer
         await loudspeaker.stopped.wait()
         await session.interrupt()
         await handle
@@ -156,7 +156,7 @@ async def test_many_simultaneous_sessions_are_not_mixed_up() -> None:
     assert talks == [[f"You said {n}", f"You said {n}, {n}"] for n in range(20)]
 
 
-# ------------------------------------------------------------------------------------------- life
+# ------------------------------------------------------------------------------------------- beginning and end
 
 
 async def test_the_agent_greets_its_user() -> None:
@@ -178,7 +178,7 @@ async def test_a_rule_that_fails_does_not_hang_the_session(words: str) -> None:
             assert await answers(session, words) == ([] if words == "hello" else ["I know that"])
 
 
-async def test_an_agent_that_has_failed_ends_the_session_with_an_error() -> None:
+async def test_a_failed_agent_ends_the_session_with_an_error() -> None:
     async with session_with(agents.hopeless) as session:
         error, closed = event_of(session, "error"), event_of(session, "close")
         assert await answers(session, "hello") == []
@@ -196,7 +196,7 @@ async def test_the_end_of_the_session_stops_the_agent() -> None:
         await context.next(rawio.output.changed)
 
 
-async def test_the_end_of_the_session_does_not_wait_for_unheard_words() -> None:
+async def test_the_end_of_the_session_does_not_wait_for_an_unfinished_utterance() -> None:
     slow, begun, said = rs.Module("slow", requires=[rawio]), asyncio.Event(), list[str]()
 
     @slow.rule(when=rs.startup, writes=rawio.output)
@@ -212,7 +212,7 @@ async def test_the_end_of_the_session_does_not_wait_for_unheard_words() -> None:
 
 
 @pytest.mark.parametrize("form", ["file", "module", "several", "policy", "context"])
-async def test_an_agent_may_be_given_in_many_forms(form: str, tmp_path: Path) -> None:
+async def test_the_agent_may_be_a_file_a_module_a_list_a_policy_or_a_context(form: str, tmp_path: Path) -> None:
     file = tmp_path / "agent.yaml"
     (tmp_path / "parrot.py").write_text("from agents import echo\n")
     file.write_text("modules: [./parrot.py]\n")
@@ -227,6 +227,6 @@ async def test_an_agent_may_be_given_in_many_forms(form: str, tmp_path: Path) ->
         assert await answers(session, "hello") == ["You said hello"]
 
 
-def test_a_deaf_agent_is_refused() -> None:
+def test_an_agent_without_rawio_is_refused() -> None:
     with pytest.raises(DeclarationError, match="rawio"):
         RavestateAgent(rs.Module("deaf"))

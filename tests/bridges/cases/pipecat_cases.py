@@ -61,7 +61,7 @@ def kinds(frames: Sequence[Frame]) -> list[type[Frame]]:
 
 
 async def run_pipeline(processor: FrameProcessor, **options: Any) -> tuple[list[Frame], list[Frame]]:
-    """Run Pipecat's `run_test` with time for a busy machine; return the frames that went downstream and upstream."""
+    """Run Pipecat's `run_test`, with long timeouts; return the frames that went downstream and upstream."""
     async with asyncio.timeout(60):
         down, up = await utils.run_test(processor, start_timeout=60, **options)
     return [f for f in down if not isinstance(f, EndFrame)], [f for f in up if not isinstance(f, EndWorkerFrame)]
@@ -76,7 +76,7 @@ async def send(processor: FrameProcessor, frame: Frame) -> None:
 
 
 class Reaction(BaseObserver):
-    """An observer that queues frames for a processor when the processor has pushed a certain text."""
+    """An observer that queues frames for a processor as soon as the processor has pushed a certain text."""
 
     def __init__(self, processor: FrameProcessor, text: str, frames: Sequence[Frame]) -> None:
         super().__init__()
@@ -93,7 +93,7 @@ async def run(
 ) -> tuple[list[Frame], list[Frame]]:
     """Send frames through a processor; return the frames that went downstream and upstream.
 
-    With `after`, send further frames once the processor has pushed a text, and then end the pipeline.
+    `after` maps a text to further frames. Send these when the processor has pushed the text; then end the pipeline.
     """
     processor = RavestateProcessor(agent)
     if after:
@@ -105,7 +105,7 @@ async def run(
 # ------------------------------------------------------------------------------------------- answers
 
 
-async def test_the_users_words_are_answered_as_a_language_model_would() -> None:
+async def test_an_answer_has_the_same_frames_as_a_language_models() -> None:
     down, up = await run(agents.echo, said("hello"), expected_down_frames=RESPONSE)
     assert texts(down) == ["You said hello"]
     assert up == []
@@ -122,12 +122,12 @@ async def test_a_filler_and_the_answer_are_two_responses() -> None:
     assert texts(down) == ["Let me think.", "It is Lima."]
 
 
-async def test_a_silent_agent_says_nothing_and_holds_nothing_up() -> None:
+async def test_the_pipeline_does_not_wait_for_an_agent_that_does_not_answer() -> None:
     down, up = await run(agents.silent, said("hello"), said("hello?"))
     assert (down, up) == ([], [])
 
 
-async def test_words_of_a_context_are_answered_once() -> None:
+async def test_each_user_message_of_an_llm_context_is_answered_once() -> None:
     context = LLMContext([{"role": "developer", "content": "Be kind."}, {"role": "user", "content": "one"}])
     later = LLMContext(
         [
@@ -141,7 +141,7 @@ async def test_words_of_a_context_are_answered_once() -> None:
     assert texts(down) == ["You said one", "You said what is the time?"]
 
 
-async def test_other_frames_pass() -> None:
+async def test_the_processor_passes_other_frames_on() -> None:
     down, _ = await run(
         agents.echo, OutputTransportMessageFrame(message={}), expected_down_frames=[OutputTransportMessageFrame]
     )
@@ -151,12 +151,12 @@ async def test_other_frames_pass() -> None:
 # ------------------------------------------------------------------------------------------- interruption
 
 
-async def test_an_interruption_ends_the_response_and_the_rule() -> None:
+async def test_an_interruption_cuts_the_response_and_cancels_the_rule() -> None:
     down, _ = await run(agents.talker, said("wait"), after={"two, ": [InterruptionFrame(), said("count")]})
     once = [LLMFullResponseStartFrame, LLMTextFrame, LLMTextFrame, LLMFullResponseEndFrame]
     again = [LLMFullResponseStartFrame, *[LLMTextFrame] * 3, LLMFullResponseEndFrame]
     assert kinds(down) == [*once, InterruptionFrame, *again]
-    assert texts(down) == ["One, ", "two, ", "One, ", "two, ", "three."]  # and not "…"
+    assert texts(down) == ["One, ", "two, ", "One, ", "two, ", "three."]  # no "…", because the response was cut
 
 
 async def test_new_words_interrupt_a_rule_without_an_interruption_frame() -> None:
@@ -164,7 +164,7 @@ async def test_new_words_interrupt_a_rule_without_an_interruption_frame() -> Non
     assert texts(down) == ["One, ", "two, ", "…", "One, ", "two, ", "three."]
 
 
-async def test_an_interruption_while_the_pipeline_ends_lets_it_end() -> None:
+async def test_a_pipeline_still_ends_if_an_interruption_comes_while_it_is_ending() -> None:
     processor = RavestateProcessor(agents.talker)
     reaction = Reaction(processor, "two, ", [InterruptionFrame()])
     down, _ = await run_pipeline(processor, frames_to_send=[said("wait")], observers=[reaction])
@@ -184,15 +184,15 @@ async def test_an_interruption_drops_all_waiting_utterances() -> None:
 async def converse(
     agent: AnyAgent, *turns: list[Frame], barge_in: str = "", voice: Sequence[FrameProcessor] = ()
 ) -> list[tuple[str, str]]:
-    """Hold a conversation in a pipeline with aggregators; return each speaker and what was said, as Pipecat keeps it.
+    """Hold a conversation in a pipeline with aggregators; return Pipecat's record of the speakers and their utterances.
 
-    The user's next turn comes when the agent's turn is over. It begins before, if the agent says the piece `barge_in`, or
-    if the loudspeaker stops.
+    The user's next turn begins when the agent's turn is over. It begins earlier if the agent says the piece `barge_in`,
+    or if the loudspeaker stops.
 
     Args:
         agent: The agent.
         turns: The frames of each turn of the user.
-        barge_in: The piece of text at which the user begins to speak.
+        barge_in: The user interrupts the agent when it says this piece.
         voice: A voice and a loudspeaker; none for a conversation in text.
     """
     context = LLMContext()
@@ -214,7 +214,8 @@ async def converse(
 
         async def on_push_frame(self, data: FramePushed) -> None:
             over = data.source is processor and isinstance(data.frame, LLMContextAssistantTurnFrame)
-            if over and data.direction is FrameDirection.UPSTREAM:  # the processor has heard of the agent's turn
+            # A frame upstream: the processor now knows that the agent's turn is over.
+            if over and data.direction is FrameDirection.UPSTREAM:
                 for frame in rest.pop(0):
                     await send(pair.user(), frame)
 
@@ -244,13 +245,13 @@ async def test_a_pipeline_with_aggregators_keeps_the_conversation() -> None:
     ]
 
 
-async def test_the_agent_knows_what_was_heard() -> None:
+async def test_the_agent_knows_what_the_user_heard() -> None:
     talk = await converse(agents.listener, turn("hello"), turn("and now?"))
     assert talk[1] == ("assistant", "heard '', captions '', speech 1")
     assert talk[3] == ("assistant", f"heard {talk[1][1]!r}, captions '', speech 2")
 
 
-async def test_the_agent_knows_what_was_heard_of_an_interrupted_utterance() -> None:
+async def test_the_agent_knows_what_the_user_heard_of_an_interrupted_utterance() -> None:
     talk = await converse(agents.interrupted, turn("wait"), turn("what did I hear?"), barge_in="two, ")
     assert talk[1:] == [
         ("assistant", "One, two,"),
@@ -262,13 +263,12 @@ async def test_the_agent_knows_what_was_heard_of_an_interrupted_utterance() -> N
 async def test_a_voice_speaks_the_answers() -> None:
     loudspeaker = Loudspeaker()
     talk = await converse(agents.counter, turn("count"), turn("what did I hear?"), voice=[Voice(), loudspeaker])
-    assert (
-        loudspeaker.played == "One.Two.Three.You heard One.Two.Three."
-    )  # a voice gets each sentence without spaces around it
+    # A voice gets each sentence without the spaces around it.
+    assert loudspeaker.played == "One.Two.Three.You heard One.Two.Three."
     assert talk[1] == ("assistant", "One. Two. Three.")
 
 
-async def test_an_interruption_stops_the_voice_and_the_agent_knows_what_was_heard() -> None:
+async def test_an_interruption_stops_the_voice_and_the_agent_knows_what_the_user_heard() -> None:
     loudspeaker = Loudspeaker()
     loudspeaker.most = len("One.Tw")
     talk = await converse(agents.counter, turn("count"), turn("what did I hear?"), voice=[Voice(), loudspeaker])
@@ -282,7 +282,7 @@ async def test_the_agent_notices_that_the_user_speaks() -> None:
     assert texts(down) == ["heard '', captions 'and n', speech 2"]
 
 
-async def test_the_agent_hears_a_guess_at_the_users_turn_once_it_is_confirmed() -> None:
+async def test_a_speculative_turn_reaches_the_agent_only_after_its_confirmation() -> None:
     guess = LLMContextFrame(LLMContext([{"role": "user", "content": "how are you?"}]), speculation=True)
     wrong = LLMContextFrame(LLMContext([{"role": "user", "content": "how"}]), speculation=True)
     confirmed = LLMContextUserTurnFrame(text="how are you?", timestamp="now")
@@ -290,7 +290,7 @@ async def test_the_agent_hears_a_guess_at_the_users_turn_once_it_is_confirmed() 
     assert texts(down) == ["You said how are you?"]
 
 
-# ------------------------------------------------------------------------------------------- life
+# ------------------------------------------------------------------------------------------- beginning and end
 
 
 async def test_the_agent_greets_its_user_and_says_goodbye() -> None:
@@ -310,7 +310,7 @@ async def test_a_rule_that_fails_does_not_hang_the_pipeline(words: str) -> None:
     assert kinds(down) == ([] if words == "hello" else RESPONSE)
 
 
-async def test_an_agent_that_has_failed_is_an_error_of_the_pipeline() -> None:
+async def test_a_failed_agent_raises_a_pipeline_error() -> None:
     _, up = await run(agents.hopeless, said("hello"))
     errors = [frame for frame in up if isinstance(frame, ErrorFrame)]
     assert [error.error for error in errors] == ["the library has burnt down"]
@@ -335,7 +335,7 @@ async def test_many_simultaneous_sessions_are_not_mixed_up() -> None:
 
 
 @pytest.mark.parametrize("form", ["file", "module", "several", "policy", "context"])
-async def test_an_agent_may_be_given_in_many_forms(form: str, tmp_path: Path) -> None:
+async def test_the_agent_may_be_a_file_a_module_a_list_a_policy_or_a_context(form: str, tmp_path: Path) -> None:
     file = tmp_path / "agent.yaml"
     file.write_text("modules: [hibye]\n")
     forms: dict[str, AnyAgent] = {
@@ -349,6 +349,6 @@ async def test_an_agent_may_be_given_in_many_forms(form: str, tmp_path: Path) ->
     assert texts(down)
 
 
-def test_a_deaf_agent_is_refused() -> None:
+def test_an_agent_without_rawio_is_refused() -> None:
     with pytest.raises(DeclarationError, match="rawio"):
         RavestateProcessor(rs.Module("deaf"))

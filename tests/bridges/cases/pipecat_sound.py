@@ -1,4 +1,4 @@
-"""A voice and a loudspeaker for Pipecat's tests: each character is 10 ms of sound, and its samples are its code."""
+"""A voice and a loudspeaker for Pipecat's tests. A character sounds for 10 ms; each sample is its code point."""
 
 import asyncio
 from array import array
@@ -13,11 +13,11 @@ from pipecat.transports.base_transport import TransportParams
 
 RATE = 16_000
 SAMPLES = RATE // 100
-"""The number of samples of a character."""
+"""The number of samples for one character."""
 
 
 class Voice(TTSService):
-    """Speaks."""
+    """A stand-in for a voice. It turns characters into samples."""
 
     def __init__(self) -> None:
         settings = TTSSettings(model=None, voice=None, language=None)
@@ -30,13 +30,13 @@ class Voice(TTSService):
 
 
 class Loudspeaker(BaseOutputTransport):
-    """Plays at once, but stops after `most` characters until the user interrupts, as if the rest took its time."""
+    """A loudspeaker that plays instantly. After `most` characters, it stops until the user interrupts the agent."""
 
     def __init__(self) -> None:
         super().__init__(TransportParams(audio_out_enabled=True, audio_out_sample_rate=RATE, audio_out_10ms_chunks=1))
         self.most = 10**6
         self.stopped = asyncio.Event()
-        """Set once it has played `most` characters."""
+        """Set when the loudspeaker has played `most` characters."""
         self._interrupted = asyncio.Event()
         self.played = ""
         """The characters that the user has heard."""

@@ -1,4 +1,4 @@
-"""A voice and a loudspeaker for LiveKit's tests: each character is 10 ms of sound, and its samples are its code."""
+"""A voice and a loudspeaker for LiveKit's tests. A character sounds for 10 ms; each sample is its code point."""
 
 import asyncio
 import time
@@ -10,17 +10,17 @@ from livekit.agents.voice import io
 
 RATE = 16_000
 SAMPLES = RATE // 100
-"""The number of samples of a character."""
+"""The number of samples for one character."""
 
 
 def words_in(sound: "array[int]") -> str:
-    """Return the text of a sound. Silence has none, and a character that is cut does not count."""
+    """Return the text of a sound, without silence and without a character that is cut off."""
     ends = sound[SAMPLES - 1 :: SAMPLES]
     return "".join(map(chr, filter(None, ends)))
 
 
 class Voice(tts.TTS[str]):
-    """Speaks."""
+    """A stand-in for a voice. It turns characters into samples."""
 
     def __init__(self) -> None:
         super().__init__(capabilities=tts.TTSCapabilities(streaming=False), sample_rate=RATE, num_channels=1)
@@ -40,13 +40,13 @@ class _Speech(tts.ChunkedStream):
 
 
 class Loudspeaker(io.AudioOutput):
-    """Plays up to `most` characters of an utterance at once, and then stands still until it is interrupted."""
+    """A loudspeaker that plays instantly. After `most` characters of an utterance, it stops until an interruption."""
 
     def __init__(self) -> None:
         super().__init__(label="loudspeaker", capabilities=io.AudioOutputCapabilities(pause=False), sample_rate=RATE)
         self.most = 10**6
         self.stopped = asyncio.Event()
-        """Set once it has played `most` characters."""
+        """Set when the loudspeaker has played `most` characters."""
         self.played: list[str] = []
         """The utterances that the user has heard."""
         self._sound = array("h")

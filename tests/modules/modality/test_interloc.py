@@ -1,4 +1,4 @@
-"""interloc: signals report the key and the name of each user who comes or goes."""
+"""interloc: its signals carry the key and the name of each user who comes or goes."""
 
 import ravestate as rs
 from ravestate.modules import interloc
@@ -20,7 +20,7 @@ async def went(ctx: rs.RuleContext) -> None:
     ctx[seen] = (*ctx[seen], ("went", key, name))
 
 
-def test_users_who_come_and_go_are_signalled() -> None:
+def test_the_signals_added_and_removed_name_users_who_come_and_go() -> None:
     with simulate(host) as sim:
         sim.put(interloc.users, {"a": "Ada"})
         sim.put(interloc.users, {"b": None})

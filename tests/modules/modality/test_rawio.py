@@ -1,4 +1,4 @@
-"""rawio: each utterance raises the signal, and code outside the rules may say one."""
+"""rawio: each input raises a signal, even an equal one, and code outside of rules may write the input."""
 
 import asyncio
 
@@ -16,14 +16,14 @@ async def repeat(ctx: rs.RuleContext) -> None:
     ctx[rawio.output] = ctx.payload(rawio.input.changed)
 
 
-def test_the_same_words_said_twice_are_two_utterances() -> None:
+def test_equal_inputs_raise_the_signal_each_time() -> None:
     with simulate(echo) as sim:
         sim.say("yes")
         sim.say("yes")
         assert sim.said == ["yes", "yes"]
 
 
-def test_words_from_another_thread_are_heard() -> None:
+def test_another_thread_can_write_the_input() -> None:
     async def main() -> str:
         async with rs.Context(echo) as context:
             waiting = asyncio.ensure_future(context.next(rawio.output.changed, timeout=30))

@@ -1,4 +1,4 @@
-"""One recogniser for all tests that teach it nothing."""
+"""A recogniser that the tests share. A test that teaches a movement makes its own."""
 
 from __future__ import annotations
 

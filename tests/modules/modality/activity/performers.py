@@ -1,4 +1,4 @@
-"""Performances of the parametric body, for the tests."""
+"""Simulated people for the tests: a skeleton from ``tools/activities`` performs an activity before a camera."""
 
 from __future__ import annotations
 
@@ -20,6 +20,9 @@ ALL = {**movements.KNOWN, **movements.OTHERS, **movements.STRANGE, **movements.U
 
 
 def performance(name: str, seed: int = 1, *, conditions: Any = camera.TAUGHT, left: float = 0.0) -> list[Any]:
-    """Return the poses of a person who performs an activity for three seconds."""
+    """Return the poses of a simulated person who performs an activity for three seconds.
+
+    `left` is the probability that the person is left-handed.
+    """
     movement, rate = ALL[name]
     return starter.poses_of(movement, rate, conditions, np.random.default_rng(seed), left=left)

@@ -1,4 +1,4 @@
-"""`visionio` passes the poses of bodies to `activity` if a rule waits for activities."""
+"""`visionio` passes body poses to `activity` only if a rule waits for activities."""
 
 from __future__ import annotations
 
@@ -15,7 +15,7 @@ VIDEO = Path(sys.prefix) / "share" / "ravestate" / "eyes" / "videos" / "walk.mp4
 
 
 @pytest.mark.parametrize("listens", [True, False])
-def test_people_in_a_real_video_are_followed(tmp_path: Path, listens: bool) -> None:
+def test_poses_from_a_real_video_reach_activity_only_if_a_rule_waits(tmp_path: Path, listens: bool) -> None:
     listener = rs.Module("listener", requires=[activity])
     if listens:
 

@@ -1,4 +1,4 @@
-"""Files of landmarks, films and windows."""
+"""Files of landmarks; films, the last poses in view; and windows, the parts of a long recording."""
 
 from __future__ import annotations
 
@@ -15,7 +15,7 @@ from ravestate.modules.modality.activity.pose import checked
 from ravestate.modules.modality.activity.windows import windows
 
 
-def test_poses_come_back_from_a_file(tmp_path: Path) -> None:
+def test_reading_a_file_gives_the_poses_and_the_name_that_were_written(tmp_path: Path) -> None:
     poses = performance("waving")
     write(tmp_path / "a.npz", poses, "waving")
     name, found = read(tmp_path / "a.npz")
@@ -24,7 +24,7 @@ def test_poses_come_back_from_a_file(tmp_path: Path) -> None:
     assert np.array_equal(found[3].points, poses[3].points)
 
 
-def test_demonstrations_get_names_of_their_own(tmp_path: Path) -> None:
+def test_each_demonstration_is_kept_in_a_new_file(tmp_path: Path) -> None:
     poses = performance("waving")
     assert [keep(tmp_path, "Über/../Fliegen", poses).name for _ in range(2)] == [
         "über-fliegen-1.npz",
@@ -43,14 +43,16 @@ def test_demonstrations_get_names_of_their_own(tmp_path: Path) -> None:
         ({"times": np.array([{}], dtype=object), "points": np.zeros((1, 33, 4))}, "no file of landmarks"),
     ],
 )
-def test_faulty_files_are_refused(tmp_path: Path, data: dict[str, object], message: str) -> None:
+def test_files_with_wrong_arrays_are_refused_with_a_reason(
+    tmp_path: Path, data: dict[str, object], message: str
+) -> None:
     file = tmp_path / "bad.npz"
     np.savez(file, **data)  # type: ignore[arg-type]
     with pytest.raises(PlatformError, match=message):
         read(file)
 
 
-def test_files_that_are_no_archives_are_refused(tmp_path: Path) -> None:
+def test_files_that_are_missing_or_no_archives_are_refused(tmp_path: Path) -> None:
     (tmp_path / "text.npz").write_text("hello")
     for name in ("text.npz", "missing.npz"):
         with pytest.raises(PlatformError, match=name):
@@ -59,13 +61,13 @@ def test_files_that_are_no_archives_are_refused(tmp_path: Path) -> None:
         checked("hello")
 
 
-def test_landmarks_get_the_same_unit_for_width_and_height() -> None:
+def test_landmarks_have_the_same_unit_for_width_and_height() -> None:
     pose = pose_of(np.ones((33, 4)), 2.0, 1600, 800)
     assert pose.points[0].tolist() == [2.0, 1.0, 2.0, 1.0]
     assert pose.at == 2.0
 
 
-def test_a_film_has_the_last_thirty_seconds() -> None:
+def test_a_film_keeps_the_last_thirty_seconds() -> None:
     points = np.zeros((33, 4), np.float32)
     film = Film()
     for at in np.arange(0, 60, 0.5):
@@ -73,12 +75,13 @@ def test_a_film_has_the_last_thirty_seconds() -> None:
     assert (film.poses[0].at, film.poses[-1].at) == (29.5, 59.5)
     assert [pose.at for pose in film.part(58.9, 100.0)] == [59.0, 59.5]
     assert film.with_pose(Pose(59.5, points)) is film
-    assert len(film.with_pose(Pose(1.0, points)).poses) == 1  # another clock, or a video that begins again
+    # If time goes back, the film drops the older poses: the clock is another one, or a video has begun again.
+    assert len(film.with_pose(Pose(1.0, points)).poses) == 1
     assert repr(film) == "Film(61 poses, 30.0 s)"
     assert repr(Film()) == "Film()"
 
 
-def test_a_long_recording_has_windows_and_a_short_one_is_a_window() -> None:
+def test_a_long_recording_has_several_windows_and_a_short_one_has_one() -> None:
     points = np.zeros((33, 4), np.float32)
     poses = [Pose(at / 10, points) for at in range(101)]
     assert [(part[0].at, part[-1].at) for part in windows(poses, 3.0, 3.0)] == [(0, 3), (3, 6), (6, 9), (9, 10)]
@@ -86,5 +89,5 @@ def test_a_long_recording_has_windows_and_a_short_one_is_a_window() -> None:
     assert list(windows([], 3.0, 1.5)) == []
 
 
-def test_names_are_written_as_they_are_spoken() -> None:
+def test_the_name_of_an_activity_is_cleaned_to_plain_words() -> None:
     assert clean(" Playing_the  Guitar\n") == "playing the guitar"

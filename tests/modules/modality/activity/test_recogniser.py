@@ -1,4 +1,4 @@
-"""The recogniser: its score on held-out performers, and what it learns from a few demonstrations."""
+"""The recogniser: its score on held-out performances, and learning from a few demonstrations."""
 
 from __future__ import annotations
 
@@ -10,13 +10,13 @@ from ravestate.modules.modality.activity import Pose, Recogniser
 from ravestate.modules.modality.activity.recogniser import Recognition
 
 RIGHT = 0.9
-"""The least share of held-out performances of known activities that are recognised."""
+"""It must recognise at least this share of held-out performances of known activities."""
 REJECTED = 0.9
-"""The least share of held-out performances of unknown movements that are rejected."""
+"""It must reject at least this share of held-out performances of unknown movements."""
 
 
-def test_held_out_performers_are_recognised_and_unknown_movements_rejected() -> None:
-    """Other bodies, cameras, tempo, noise and cut-off limbs than in the starter set."""
+def test_held_out_performances_are_recognised_and_unknown_movements_rejected() -> None:
+    """The performances differ from the starter set in bodies, cameras, tempo, noise and cut-off limbs."""
     score = starter.score(12, seed=900)
     assert score.right >= RIGHT, starter.show(score)
     assert score.rejected >= REJECTED, starter.show(score)
@@ -24,7 +24,7 @@ def test_held_out_performers_are_recognised_and_unknown_movements_rejected() -> 
     assert score.wrong <= 0.03, starter.show(score)
 
 
-def test_the_starter_set_has_the_activities_that_people_play(recogniser: Recogniser) -> None:
+def test_the_starter_set_has_the_activities_that_people_act_out(recogniser: Recogniser) -> None:
     wanted = {"waving", "clapping", "jumping", "squatting", "boxing", "swimming", "playing the guitar", "drinking"}
     wanted |= {"phoning", "brushing teeth", "driving", "rowing"}
     assert wanted <= set(recogniser.names)
@@ -33,7 +33,7 @@ def test_the_starter_set_has_the_activities_that_people_play(recogniser: Recogni
 
 @pytest.mark.parametrize("demonstrations", [1, 3])
 def test_a_movement_is_learnt_from_a_few_demonstrations(demonstrations: int) -> None:
-    """Performers who are not in the demonstrations are recognised afterwards, and known activities stay known."""
+    """Then the movement is recognised in other performers, too, and known activities are still recognised."""
     taught = ("archery", "skiing", "stretching", "golf", "sawing", "juggling")
     hits = 0
     for name in taught:
@@ -47,13 +47,13 @@ def test_a_movement_is_learnt_from_a_few_demonstrations(demonstrations: int) -> 
     assert hits / (10 * len(taught)) >= (0.65 if demonstrations == 1 else 0.75), hits
 
 
-def test_the_side_of_the_body_does_not_matter(recogniser: Recogniser) -> None:
+def test_an_activity_is_recognised_with_either_side_of_the_body(recogniser: Recogniser) -> None:
     for name in ("waving", "drinking", "hammering", "phoning", "playing the guitar"):
         for left in (0.0, 1.0):
             assert recogniser.recognise(performance(name, 3, left=left)).name == name
 
 
-def test_distance_and_place_do_not_matter(recogniser: Recogniser) -> None:
+def test_an_activity_is_recognised_at_any_distance_and_place(recogniser: Recogniser) -> None:
     poses = performance("rowing", 4)
     near = recogniser.recognise(poses)
     scale, place = np.array([0.2, 0.2, 0.2, 1.0], np.float32), np.array([3.0, -1.0, 0.0, 0.0], np.float32)
@@ -63,7 +63,7 @@ def test_distance_and_place_do_not_matter(recogniser: Recogniser) -> None:
 
 
 @pytest.mark.parametrize("tempo", [0.7, 1.0, 1.5])
-def test_tempo_does_not_matter(recogniser: Recogniser, tempo: float) -> None:
+def test_an_activity_is_recognised_at_another_tempo(recogniser: Recogniser, tempo: float) -> None:
     poses = [Pose(pose.at / tempo, pose.points) for pose in performance("clapping", 5)]
     assert recogniser.recognise(poses).name == "clapping"
 
@@ -86,7 +86,7 @@ def test_pictures_without_a_body_show_no_activity(recogniser: Recogniser, spoil:
     assert not Recogniser(recogniser.starter).teach("nothing", [] if spoil == "nothing" else spoilt[:5])
 
 
-def test_a_few_broken_poses_do_no_harm(recogniser: Recogniser) -> None:
+def test_an_activity_is_recognised_despite_a_few_broken_poses(recogniser: Recogniser) -> None:
     poses = performance("boxing", 8)
     broken = [
         Pose(pose.at, pose.points * np.nan if number % 7 == 3 else pose.points) for number, pose in enumerate(poses)
@@ -94,8 +94,8 @@ def test_a_few_broken_poses_do_no_harm(recogniser: Recogniser) -> None:
     assert recogniser.recognise(broken).name == "boxing"
 
 
-def test_the_starter_set_is_what_the_tool_makes(recogniser: Recogniser) -> None:
-    """The file is not stale: fresh performances under the tool's own conditions are recognised."""
+def test_the_starter_set_fits_the_performances_that_the_tool_makes(recogniser: Recogniser) -> None:
+    """An outdated file of the starter set would not recognise new performances from the same tool."""
     trials = starter.performances(starter.KNOWN, 4, camera.TAUGHT, 77)
     right = [recogniser.recognise_features(pair).name == name for name, pairs in trials.items() for pair in pairs]
     assert sum(right) / len(right) >= 0.95

@@ -31,7 +31,7 @@ class Witness:
 
 
 def show(sim: Simulation, poses: Sequence[activity.Pose]) -> tuple[float, float]:
-    """Let a camera see a performance; return its beginning and end."""
+    """Emit the poses of a performance as a camera would; return the times of its beginning and end."""
     start = sim.now
     for pose in poses:
         sim.advance(max(0.0, start + pose.at - sim.now))
@@ -51,7 +51,7 @@ def test_a_known_activity_is_recognised_every_half_second(tmp_path: Path) -> Non
         assert 0.5 < one.confidence <= 1.0
 
 
-def test_an_unknown_movement_raises_nothing_until_it_is_taught(tmp_path: Path) -> None:
+def test_an_unknown_movement_raises_no_signal_until_it_is_taught(tmp_path: Path) -> None:
     settings = {"activity": {"folder": tmp_path}}
     witness = Witness()
     with simulate(activity, witness.module, settings=settings) as sim:
@@ -80,7 +80,7 @@ def test_a_lesson_without_poses_or_without_a_name_teaches_nothing(tmp_path: Path
         assert list(tmp_path.iterdir()) == []
 
 
-def test_a_person_who_has_gone_is_not_in_view(tmp_path: Path) -> None:
+def test_in_view_becomes_false_when_the_person_leaves(tmp_path: Path) -> None:
     with simulate(activity, settings={"activity": {"folder": tmp_path}}) as sim:
         assert not sim.read(activity.in_view)
         show(sim, performance("waving", 1)[:10])
@@ -101,7 +101,7 @@ def test_a_body_that_leaves_and_comes_back_is_a_new_movement(tmp_path: Path) -> 
         assert witness.names == {"waving"}
 
 
-def test_the_labels_of_another_recogniser_are_taken_over(tmp_path: Path) -> None:
+def test_the_label_of_another_recogniser_becomes_a_recognised_activity(tmp_path: Path) -> None:
     witness = Witness()
     with simulate(activity, witness.module, settings={"activity": {"folder": tmp_path}}) as sim:
         sim.advance(10.0)
@@ -110,7 +110,7 @@ def test_the_labels_of_another_recogniser_are_taken_over(tmp_path: Path) -> None
         assert witness.seen == [activity.Activity("playing the piano", 1.0, 7.0, 10.0)]
 
 
-def test_a_broken_file_is_reported_and_left_out(tmp_path: Path, caplog: pytest.LogCaptureFixture) -> None:
+def test_a_broken_file_is_reported_and_skipped(tmp_path: Path, caplog: pytest.LogCaptureFixture) -> None:
     (tmp_path / "bad.npz").write_bytes(b"nothing")
     np.savez(tmp_path / "empty.npz", times=np.zeros(0), points=np.zeros((0, 33, 4)))
     with simulate(activity, settings={"activity": {"folder": tmp_path}}) as sim:
@@ -119,7 +119,7 @@ def test_a_broken_file_is_reported_and_left_out(tmp_path: Path, caplog: pytest.L
     assert "bad.npz" in caplog.text and "empty.npz" in caplog.text
 
 
-def test_a_folder_that_cannot_be_written_keeps_the_lesson_for_this_session(
+def test_a_lesson_that_cannot_be_written_to_the_folder_lasts_for_this_session(
     tmp_path: Path, caplog: pytest.LogCaptureFixture
 ) -> None:
     place = tmp_path / "file"

@@ -1,4 +1,4 @@
-"""The rules of `recognise`; `tests/quality` measures how well it recognises feelings."""
+"""`recognise` on single sentences and odd texts. `tests/quality` measures how well it recognises feelings."""
 
 import pytest
 
@@ -23,7 +23,7 @@ from ravestate.modules.modality.emotion.recogniser import recognise
         ("This robot is amazing.", "shy"),
     ],
 )
-def test_the_agent_is_known_by_its_names(sentence: str, feeling: str | None) -> None:
+def test_a_sentence_about_the_agents_name_raises_a_feeling(sentence: str, feeling: str | None) -> None:
     assert recognise(sentence, ["Rosie"]) == feeling
 
 
@@ -45,7 +45,7 @@ def test_the_agent_is_known_by_its_names(sentence: str, feeling: str | None) -> 
         "so very really " * 10_000,
     ],
 )
-def test_recognise_takes_any_text(text: str) -> None:
+def test_recognise_accepts_any_text(text: str) -> None:
     assert recognise(text) in (None, "surprised", "happy", "affectionate")
 
 
@@ -64,11 +64,11 @@ def test_recognise_takes_any_text(text: str) -> None:
         ("🎉🎉", "happy"),
     ],
 )
-def test_the_examples_of_the_readme_hold(text: str, feeling: str | None) -> None:
+def test_recognise_gives_the_results_that_the_readme_shows(text: str, feeling: str | None) -> None:
     assert recognise(text) == feeling
 
 
-def test_without_the_model_only_examples_are_recognised_and_other_words_raise_an_error_with_the_remedy(
+def test_without_the_model_recognise_knows_only_its_examples_and_otherwise_raises_an_error(
     monkeypatch: pytest.MonkeyPatch,
 ) -> None:
     class Missing(Matcher):
@@ -84,14 +84,14 @@ def test_without_the_model_only_examples_are_recognised_and_other_words_raise_an
         recognise("I like you.")
 
 
-def test_the_package_offers_recognise() -> None:
+def test_the_package_exports_recognise() -> None:
     assert emotion.recognise("I love you.") == "affectionate"
 
 
 @pytest.mark.parametrize(
     "text", ["aww, you poor computer", "Bad. My chest aches when I laugh.", "Is that not hard for you?"]
 )
-def test_sympathy_and_complaints_are_no_insults(text: str) -> None:
+def test_sympathy_and_complaints_are_not_recognised_as_insults(text: str) -> None:
     said = heard(text)
     bundled_matcher("acts").load()
     bundled_matcher("feelings").load()

@@ -1,4 +1,4 @@
-"""A feeling shows once, after the answer of any rule."""
+"""The rules of `emotion`: words raise feelings, and an emoji shows a feeling once, after the answer of any rule."""
 
 import asyncio
 from collections import Counter, deque
@@ -20,7 +20,7 @@ CALM: dict[str, Any] = {"shy": 0.0, "surprised": 0.0, "happy": 0.0, "affectionat
 
 
 def module(name: str = "skill", seconds: float = 0.0, **declared: Any) -> rs.Module:
-    """A skill that answers everything with "Yes." after a few seconds."""
+    """Return a skill that answers every input with "Yes." after some seconds."""
     skill = rs.Module(name, requires=[rawio, emotion])
 
     @skill.rule(when=rawio.input.changed, writes=rawio.output, **declared)
@@ -33,7 +33,8 @@ def module(name: str = "skill", seconds: float = 0.0, **declared: Any) -> rs.Mod
 
 
 def calm(*modules: Any, **settings: Any) -> Simulation:
-    more = {"wildtalk": {"gate": False}} if wildtalk in modules else {}  # the pieces are not sentences
+    # The pieces of `Model` are not sentences, so the gate would refuse them.
+    more = {"wildtalk": {"gate": False}} if wildtalk in modules else {}
     return simulate(emotion, *modules, settings={"emotion": {**CALM, **settings}, **more})
 
 
@@ -73,7 +74,7 @@ def test_neutral_words_raise_no_feeling(text: str) -> None:
         ("Good night!", "affectionate"),
     ],
 )
-def test_an_utterance_may_raise_a_feeling_by_chance(text: str, feeling: str) -> None:
+def test_some_inputs_raise_a_feeling_with_the_probability_in_the_settings(text: str, feeling: str) -> None:
     with calm(**{feeling: 1.0}) as sim:
         sim.say(text)
         assert felt(sim) == [feeling]
@@ -82,8 +83,8 @@ def test_an_utterance_may_raise_a_feeling_by_chance(text: str, feeling: str) -> 
         assert felt(sim) == []
 
 
-def test_chance_decides_as_often_as_the_setting_says_and_repeats_with_the_seed() -> None:
-    def moved(seed: int) -> list[bool]:
+def test_the_frequency_fits_the_setting_and_equal_seeds_give_equal_results() -> None:
+    def showed_feeling(seed: int) -> list[bool]:
         with simulate(emotion, settings={"emotion": {**CALM, "shy": 0.3}}, seed=seed) as sim:
             found: list[bool] = []
             for _ in range(200):
@@ -92,10 +93,10 @@ def test_chance_decides_as_often_as_the_setting_says_and_repeats_with_the_seed()
                 found.append(len(felt(sim)) > before)
             return found
 
-    first = moved(1)
+    first = showed_feeling(1)
     assert 40 <= sum(first) <= 80
-    assert first == moved(1)
-    assert first != moved(2)
+    assert first == showed_feeling(1)
+    assert first != showed_feeling(2)
 
 
 def test_a_probability_above_1_is_refused() -> None:
@@ -147,7 +148,7 @@ def test_any_rule_may_raise_a_feeling_before_or_after_it_speaks() -> None:
             assert sim.said[1] in EMOJI["happy"]
 
 
-def test_one_emoji_shows_the_later_of_two_feelings() -> None:
+def test_only_the_latest_feeling_is_shown_as_an_emoji() -> None:
     glad = rs.Module("glad", requires=[rawio, emotion])
 
     @glad.rule(when=rawio.input.changed, writes=rawio.output, emits=(emotion.happy, emotion.affectionate))
@@ -166,7 +167,7 @@ def test_one_emoji_shows_the_later_of_two_feelings() -> None:
         assert sim.said[1] in EMOJI["affectionate"]
 
 
-def test_two_feelings_in_one_instant_show_once() -> None:
+def test_simultaneous_feelings_are_shown_as_one_emoji() -> None:
     glad = rs.Module("glad", requires=[rawio, emotion])
     bell = glad.signal("bell")
 
@@ -182,7 +183,7 @@ def test_two_feelings_in_one_instant_show_once() -> None:
         assert sim.said[0] in ALL
 
 
-def test_a_rule_that_answers_a_feeling_goes_before_small_talk() -> None:
+def test_a_rule_that_reacts_to_a_feeling_answers_instead_of_small_talk() -> None:
     kind = rs.Module("kind", requires=[rawio, emotion])
 
     @kind.rule(when=emotion.happy, writes=rawio.output)
@@ -206,7 +207,7 @@ def test_no_emoji_appears_if_the_user_speaks_before_the_answer_ends() -> None:
         assert sim.said == ["Yes.", "Yes."]
 
 
-def test_each_feeling_shows_at_its_own_answer() -> None:
+def test_each_feeling_is_shown_after_its_own_answer() -> None:
     with calm(module()) as sim:
         for _ in range(3):
             sim.say("You are so clever!")
@@ -224,7 +225,7 @@ def test_the_emoji_waits_for_the_answer_and_not_for_a_filler() -> None:
 
 
 def more_specific() -> rs.Module:
-    """A skill that makes others wait for 3 s, and then resigns."""
+    """Return a skill that makes other rules wait for 3 s, and then resigns."""
     slow = rs.Module("slow", requires=[rawio])
 
     @slow.rule(when=rawio.input.changed.where(bool), writes=rawio.output)
@@ -235,7 +236,7 @@ def more_specific() -> rs.Module:
     return slow
 
 
-def test_hibyes_greeting_and_the_emoji_go_together() -> None:
+def test_the_emoji_follows_the_greeting_of_hibye() -> None:
     with calm(hibye, happy=1.0) as sim:
         sim.say("Hello!")
         assert len(sim.said) == 2
@@ -263,7 +264,7 @@ def test_plain_questions_do_not_surprise_the_agent(text: str) -> None:
         assert "surprised" not in felt(sim)
 
 
-def test_an_emoji_does_not_put_boredom_off() -> None:
+def test_an_emoji_does_not_delay_the_signal_bored() -> None:
     bored = rs.Module("lonely", requires=[rawio, idle])
 
     @bored.rule(when=idle.bored, writes=rawio.output)
@@ -278,7 +279,7 @@ def test_an_emoji_does_not_put_boredom_off() -> None:
         assert [a for a in sim.snapshot()["activations"] if "emotion" in str(a)] == []
 
 
-def test_contexts_share_no_feelings() -> None:
+def test_each_context_has_its_own_feelings() -> None:
     policy = rs.compile(emotion)
     with simulate(policy) as one, simulate(policy) as other:
         one.say("I love you.")
@@ -290,7 +291,7 @@ def test_contexts_share_no_feelings() -> None:
 
 
 class Model:
-    """A language model that yields three pieces, one a second."""
+    """A language model that yields three pieces, one per second."""
 
     async def load(self, progress: object = None) -> None: ...
 
@@ -304,7 +305,7 @@ class Model:
 
 
 class Screen:
-    """A screen with lines from a test; it keeps its output."""
+    """A screen for which a test types lines. It keeps the output in `lines`."""
 
     interactive = True
 

@@ -1,4 +1,4 @@
-"""A memory for each test, and the end of the worker."""
+"""Fixtures: an empty memory for each test, loaded language models, and the end of the shared vision worker."""
 
 from __future__ import annotations
 
@@ -16,7 +16,7 @@ from ravestate.modules.skill.persqa import kinds
 
 @pytest.fixture(scope="session", autouse=True)
 def worker() -> Iterator[None]:
-    """End the shared worker after all tests."""
+    """End the shared vision worker after all tests."""
     yield
     if eye.cache_info().currsize:
         eye().close()
@@ -24,7 +24,7 @@ def worker() -> Iterator[None]:
 
 @pytest.fixture(scope="session")
 def reader() -> None:
-    """Load the models that understand text, once for all tests."""
+    """Load the language models once for all tests."""
     pipeline("").load()
     kinds.load()
     for name in MATCHERS:
@@ -33,5 +33,5 @@ def reader() -> None:
 
 @pytest.fixture
 def memory(tmp_path: Path) -> Path:
-    """The file of an empty memory."""
+    """The path for a new, empty memory."""
     return tmp_path / "memory.lbug"

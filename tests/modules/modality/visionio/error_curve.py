@@ -1,10 +1,10 @@
-"""Measure how often faces are confused, and write the table of the documentation.
+"""Measure how often the agent confuses faces, and print the table for the documentation.
 
     PYTHONPATH=tests python -m modules.modality.visionio.error_curve
 
-The photos are those of `photographs`: 14 faces of nine people. The tool also makes pictures under bad conditions from
-each photo. If the distance of two photos of one person is above the threshold, the agent wrongly refuses the pair.
-If the distance of two people is below it, the agent wrongly accepts the pair.
+The photos in `photographs` show 14 faces of nine people. From each photo, the tool also makes worse pictures: dark,
+blurred, and so on. The agent wrongly refuses two pictures of one person if their distance is above the threshold. It
+wrongly accepts pictures of two people if their distance is at most the threshold.
 """
 
 import tempfile
@@ -45,7 +45,7 @@ cv2.imwrite(a[1], face)
 
 
 def seen() -> tuple[dict[tuple[str, str], tuple[float, ...]], int]:
-    """Return (face, condition) → vector, and the number of faces that were not found."""
+    """Return the vector of each face under each condition, and the number of faces that were not found."""
     found: dict[tuple[str, str], tuple[float, ...]] = {}
     missed = 0
     with tempfile.TemporaryDirectory() as folder:
@@ -67,13 +67,13 @@ def person(name: str) -> str:
 
 
 def main() -> None:
-    """Print the table."""
+    """Measure all pairs of pictures, and print the table."""
     found, missed = seen()
     same: list[float] = []
     different: list[float] = []
     for (one, kind), (other, condition) in combinations(found, 2):
         if one == other:
-            continue  # one photo under two conditions proves little
+            continue  # skip pairs that come from the same photo
         distance = dist(found[one, kind], found[other, condition])
         (same if person(one) == person(other) else different).append(distance)
     print(

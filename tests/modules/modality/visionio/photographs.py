@@ -18,14 +18,14 @@ from ravestate.modules.modality.visionio.tracks import Sighting, Tracks
 PHOTOS = Path(sys.prefix) / "share" / "ravestate" / "eyes" / "photos"
 
 OBAMA = ("obama", "obama2", "obama2_32bit", "obama3", "obama_partial_face", "obama_partial_face2")
-"""Photos of one man."""
+"""Photos of the same man."""
 OTHERS = ("biden", "hanks", *(f"six_{number}" for number in range(6)))
-"""Photos of eight other people; six are in one photo."""
+"""Faces of eight other people. Six of them are in one photo, `six`."""
 
 
 @dataclass(frozen=True)
 class Seen:
-    """A face, as the vision worker reports it."""
+    """A face that the vision worker has found."""
 
     vector: tuple[float, ...]
     quality: float
@@ -39,12 +39,12 @@ def photo(name: str) -> Path:
 
 @cache
 def eye() -> Eye:
-    """The vision worker, which all tests of a process share."""
+    """Return the vision worker that all tests of a process share."""
     return Eye()
 
 
 def look(data: bytes, **request: Any) -> dict[str, Any]:
-    """Look at a picture."""
+    """Return the worker's results for a picture."""
     seen = eye().look_now(["faces"], {"thorough": 2, "most": 100, **request}, frame=Frame(data))
     assert seen is not None
     return seen
@@ -52,7 +52,7 @@ def look(data: bytes, **request: Any) -> dict[str, Any]:
 
 @cache
 def faces() -> dict[str, Seen]:
-    """Return all faces of the photos."""
+    """Return all faces in the photos, by name."""
     found: dict[str, Seen] = {}
     for name in (*OBAMA, "biden", "hanks", "six"):
         seen = look(photo(name).read_bytes())["faces"]
@@ -63,7 +63,7 @@ def faces() -> dict[str, Seen]:
 
 
 def make(program: str, *arguments: object) -> None:
-    """Run a program in the environment of the eyes, which has OpenCV, to make a picture or a video."""
+    """Run a program with OpenCV, in the environment of the vision worker, to make a picture or a video."""
     import subprocess
 
     done = subprocess.run(
@@ -74,20 +74,20 @@ def make(program: str, *arguments: object) -> None:
 
 
 class Stage:
-    """People before a camera: real vectors, without the worker. Each has a place, and so a track."""
+    """A stand-in for the camera and the worker: it shows people by their real vectors. Each person has their own track."""
 
     def __init__(self, sure: int = 3) -> None:
         self._tracks = Tracks(sure)
         self._places: dict[str, int] = {}
 
     def show(self, sim: Any, *people: str, seconds: float = 2.0, rate: float = 5.0) -> None:
-        """Show people for a time.
+        """Show people to the agent for some time.
 
         Args:
             sim: The simulation of an agent with visionio.
-            people: Names of faces. ``anna=obama`` is the face *obama* at a place of its own.
-            seconds: The seconds for which to show them.
-            rate: Pictures a second.
+            people: Names of faces. ``here=obama`` shows the face *obama* at a place that is called *here*.
+            seconds: The time for which to show them (seconds).
+            rate: The number of pictures per second.
         """
         from ravestate.modules.modality.visionio.names import sighted
 
@@ -110,5 +110,5 @@ class Stage:
             sim.advance(1.0 / rate)
 
     def empty(self, sim: Any, seconds: float = 10.0) -> None:
-        """Show nobody for a time."""
+        """Show nobody for some seconds."""
         self.show(sim, seconds=seconds, rate=2.0)

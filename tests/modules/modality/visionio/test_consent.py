@@ -16,7 +16,7 @@ pytestmark = pytest.mark.usefixtures("reader")
 
 
 def chatter() -> Any:
-    """A module that speaks whenever its signal is raised."""
+    """Return a module that asks about tea when its signal is raised, and this signal."""
     module = rs.Module("chatter", requires=[rawio])
     speak = module.signal("speak", input=True)
 
@@ -27,7 +27,7 @@ def chatter() -> Any:
     return module, speak
 
 
-def test_a_yes_to_another_question_is_no_permission(memory: Path) -> None:
+def test_a_yes_to_another_question_is_no_permission_to_keep_a_face(memory: Path) -> None:
     stage, (module, speak) = Stage(), chatter()
     with agent(memory, module) as sim:
         stage.show(sim, "biden")
@@ -42,7 +42,7 @@ def test_a_yes_to_another_question_is_no_permission(memory: Path) -> None:
     assert remembered(memory) == {"Joe": 0}
 
 
-def test_a_yes_and_a_wish_about_a_face_are_not_answered_by_small_talk(memory: Path) -> None:
+def test_only_visionio_answers_a_permission_or_a_wish_about_a_face(memory: Path) -> None:
     stage = Stage()
     settings = {
         "visionio": {"source": ""},
@@ -61,7 +61,7 @@ def test_a_yes_and_a_wish_about_a_face_are_not_answered_by_small_talk(memory: Pa
             assert len(sim.said) == before + 1 and answer in sim.said[-1], sim.said[before:]
 
 
-def test_a_user_whose_camera_is_off_may_have_their_face_forgotten(memory: Path) -> None:
+def test_a_user_whom_the_agent_no_longer_sees_can_have_their_face_forgotten(memory: Path) -> None:
     stage = Stage()
     with agent(memory) as sim:
         sim.put(interloc.users, {"page": None})
@@ -83,7 +83,7 @@ def test_the_agent_keeps_no_vector_of_a_stranger_who_has_left(memory: Path) -> N
         assert sim.read(visionio.history) == () and sim.read(visionio.visitors) == {}
 
 
-def test_no_trace_has_a_vector(memory: Path) -> None:
+def test_the_trace_contains_no_vector_of_a_face(memory: Path) -> None:
     stage = Stage()
     with agent(memory) as sim:
         meet(sim, stage, "obama", "Barack")
@@ -93,7 +93,7 @@ def test_no_trace_has_a_vector(memory: Path) -> None:
     assert not any(repr(number) in text for number in faces()["obama"].vector)
 
 
-def test_nobody_is_forgotten_if_there_are_several_users_whom_the_agent_does_not_see(memory: Path) -> None:
+def test_with_several_unseen_users_the_agent_forgets_no_face_and_says_why(memory: Path) -> None:
     with agent(memory) as sim:
         sim.put(interloc.users, {"a": interloc.Recognised("Ada", Node("Person", {"name": "Ada"})), "b": None})
         sim.say("forget my face")

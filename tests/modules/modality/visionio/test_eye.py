@@ -1,4 +1,4 @@
-"""A camera in the worker: video files, folders, devices; and a worker that dies."""
+"""Cameras of the vision worker: video files, folders and devices. A worker that dies is replaced."""
 
 import os
 import signal
@@ -31,14 +31,14 @@ def eye() -> Iterator[Eye]:
 
 @pytest.fixture(scope="session")
 def clip(tmp_path_factory: pytest.TempPathFactory) -> Path:
-    """A video of four seconds: one man, then another."""
+    """A video of one man for two seconds, and of another man for two seconds."""
     file = tmp_path_factory.mktemp("clip") / "two.mp4"
     make(CLIP, photo("obama"), photo("biden"), file)
     return file
 
 
 async def see(eye: Eye, at: float) -> int | None:
-    """Return the number of faces at a time of the video; None without a new picture."""
+    """Return the number of faces in the picture at a time of the video; None if there is no new picture."""
     seen = await eye.look(["faces"], {"most": 0}, at=at)
     return None if seen is None else len(seen["faces"])
 
@@ -53,7 +53,7 @@ def test_a_video_gives_its_newest_picture_and_skips_older_ones(eye: Eye, clip: P
     async def watch() -> None:
         assert await eye.open(str(clip)) is False
         assert await see(eye, 0.0) == 1
-        assert await see(eye, 0.01) is None  # the same picture
+        assert await see(eye, 0.01) is None  # still the same picture
         assert await see(eye, 1.05) == 1
         assert eye.skipped == 9 and not eye.ended
         assert await see(eye, 9.0) == 1
@@ -63,7 +63,7 @@ def test_a_video_gives_its_newest_picture_and_skips_older_ones(eye: Eye, clip: P
     run(watch())
 
 
-def test_a_video_begins_again_if_the_request_says_so(eye: Eye, clip: Path) -> None:
+def test_a_video_begins_again_if_it_is_opened_as_a_loop(eye: Eye, clip: Path) -> None:
     async def watch() -> None:
         await eye.open(str(clip), loop=True)
         for at in (0.0, 3.0, 5.0, 8.5):
@@ -73,7 +73,7 @@ def test_a_video_begins_again_if_the_request_says_so(eye: Eye, clip: Path) -> No
     run(watch())
 
 
-def test_a_folder_shows_each_picture_for_a_second(eye: Eye, tmp_path: Path) -> None:
+def test_each_picture_of_a_folder_is_shown_for_a_second(eye: Eye, tmp_path: Path) -> None:
     for number, name in enumerate(("biden", "six")):
         (tmp_path / f"{number}.jpg").write_bytes(photo(name).read_bytes())
     (tmp_path / "2.jpg").write_bytes(b"broken")
@@ -110,14 +110,14 @@ def test_an_empty_folder_is_reported(eye: Eye, tmp_path: Path) -> None:
         run(eye.open(str(tmp_path)))
 
 
-def test_a_file_that_is_no_video_is_reported(eye: Eye, tmp_path: Path) -> None:
+def test_a_file_that_is_not_a_video_is_reported(eye: Eye, tmp_path: Path) -> None:
     (tmp_path / "bad.mp4").write_bytes(b"\0" * 5000)
     with pytest.raises(PlatformError, match="no video that can be read"):
         run(eye.open(str(tmp_path / "bad.mp4")))
 
 
-def test_a_video_that_breaks_off_is_reported(eye: Eye, tmp_path: Path, clip: Path) -> None:
-    """A Motion-JPEG file whose end is missing, as after a full disk."""
+def test_a_video_without_its_end_is_reported_or_ends(eye: Eye, tmp_path: Path, clip: Path) -> None:
+    """Only the first half of a Motion-JPEG file is there, as after a full disk."""
     file = tmp_path / "cut.avi"
     make(CLIP.replace("mp4v", "MJPG"), photo("obama"), photo("biden"), file)
     data = file.read_bytes()
@@ -135,11 +135,11 @@ def test_a_video_that_breaks_off_is_reported(eye: Eye, tmp_path: Path, clip: Pat
     assert "damaged" in str(run(watch())) or eye.ended
 
 
-def test_a_worker_that_dies_is_replaced_and_the_video_goes_on(clip: Path) -> None:
+def test_a_worker_that_dies_is_replaced_and_the_video_continues(clip: Path) -> None:
     from ravestate.modules._children import process as processes
 
     eye = Eye()
-    shared, eye._process = eye._process, processes.take(  # a process of its own, to be killed
+    shared, eye._process = eye._process, processes.take(  # a separate process, which the test kills
         eye._process._backend, {"want": ["faces"]}, eyes_python(), shared=False
     )  # fmt: skip
     processes.drop(shared)
@@ -151,7 +151,7 @@ def test_a_worker_that_dies_is_replaced_and_the_video_goes_on(clip: Path) -> Non
         killed = eye.process.pid
         os.kill(killed, signal.SIGKILL)
         with pytest.raises(PlatformError, match="ended"):
-            for _ in range(3):  # the kill may take a moment
+            for _ in range(3):  # the process may take a moment to die
                 await see(eye, 0.5)
         assert await see(eye, 1.0) == 1
         assert eye.process.pid not in (None, killed)
@@ -184,7 +184,7 @@ def test_a_camera_is_closed_even_while_the_worker_is_busy(clip: Path) -> None:
     try:
         assert run(one.open(str(clip))) is False
         stream = one._stream
-        with one.process._turn:  # a look of another agent
+        with one.process._turn:  # as if the worker looked at a picture for another agent
             one.close()
         for thread in threading.enumerate():
             if thread.name == "visionio-close":

@@ -1,4 +1,4 @@
-"""A platform's camera: only the newest picture is kept."""
+"""The camera of a platform keeps only the newest picture."""
 
 import asyncio
 import threading
@@ -10,7 +10,7 @@ from ravestate.errors import PlatformError
 from ravestate.modules.modality.visionio.frames import Frame, Frames
 
 
-def test_only_the_newest_picture_is_given() -> None:
+def test_next_returns_only_the_newest_picture() -> None:
     async def watch() -> None:
         frames = Frames()
         for number in range(5):
@@ -33,7 +33,7 @@ def test_a_picture_from_another_thread_wakes_the_agent() -> None:
     assert "pixels" not in repr(frame)
 
 
-def test_a_camera_takes_messages_of_ros() -> None:
+def test_put_message_accepts_pictures_from_ros() -> None:
     frames = Frames()
     frames.put_message(SimpleNamespace(format="jpeg", data=[1, 2]))
     frame = asyncio.run(frames.next())
@@ -45,7 +45,7 @@ def test_a_camera_takes_messages_of_ros() -> None:
         frames.put_message(SimpleNamespace(data=b"", height=1, width=1, step=4, encoding="32FC1"))
 
 
-def test_a_closed_camera_ends_the_watch_and_takes_nothing_more() -> None:
+def test_next_returns_none_once_the_camera_is_closed() -> None:
     async def watch() -> None:
         frames = Frames()
         asyncio.get_running_loop().call_soon(frames.close)
@@ -56,10 +56,10 @@ def test_a_closed_camera_ends_the_watch_and_takes_nothing_more() -> None:
     asyncio.run(watch())
 
 
-def test_taken_returns_once_the_picture_has_been_taken_or_the_camera_is_closed() -> None:
+def test_taken_waits_until_next_has_returned_the_picture_or_the_camera_is_closed() -> None:
     async def watch() -> None:
         frames = Frames()
-        await frames.taken()  # there is none
+        await frames.taken()  # returns at once, because there is no picture
         order: list[str] = []
 
         async def wait() -> None:

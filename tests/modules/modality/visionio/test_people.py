@@ -1,4 +1,4 @@
-"""Faces in memory: the functions store, find, merge and forget them."""
+"""Functions that store, find, merge and forget faces in memory."""
 
 from collections.abc import Iterator
 from pathlib import Path
@@ -36,13 +36,13 @@ def keep(memory: Memory, name: str, *photos: str, most: int = 8) -> tuple[Node, 
     return do(memory, file)
 
 
-def test_a_vector_survives_as_text_and_damaged_text_is_nothing() -> None:
+def test_a_vector_can_be_packed_as_text_and_damaged_text_unpacks_to_none() -> None:
     text = people.packed(vector("obama"))
     assert people.unpacked(text) == pytest.approx(vector("obama"), abs=1e-7)
     assert people.unpacked("") is None and people.unpacked(text[:-4]) is None and people.unpacked("ä" * 684) is None
 
 
-def test_the_nearest_person_is_found_up_to_the_threshold(graph: Memory) -> None:
+def test_nearest_returns_the_nearest_person_within_the_threshold(graph: Memory) -> None:
     assert do(graph, lambda g: people.nearest(g, vector("obama"), 0.55)) is None
     keep(graph, "Barack", "obama")
     keep(graph, "Joe", "biden")
@@ -59,14 +59,14 @@ def test_nobody_is_recognised_if_two_people_are_equally_near(graph: Memory) -> N
     assert do(graph, lambda g: people.nearest(g, vector("obama3"), 0.55)) is None
 
 
-def test_a_view_that_tells_nothing_new_is_left_out_and_the_oldest_goes(graph: Memory) -> None:
+def test_keep_skips_views_that_are_known_and_drops_the_oldest_views(graph: Memory) -> None:
     assert keep(graph, "Barack", "obama2", "obama2_32bit")[1] == 1
     person, filed = keep(graph, "Barack", *OBAMA, most=3)
     assert filed >= 3
     assert len(do(graph, lambda g: people.faces_of(g, person))) == 3
 
 
-def test_people_with_equal_names_and_similar_faces_are_merged_and_others_are_not(graph: Memory) -> None:
+def test_keep_merges_only_people_with_equal_names_and_similar_faces(graph: Memory) -> None:
     first, _ = keep(graph, "Barack", "obama")
     keep(graph, "Joe", "biden")
 
@@ -80,10 +80,10 @@ def test_people_with_equal_names_and_similar_faces_are_merged_and_others_are_not
     assert [one["name"] for one in graph.related(kept, "lives_in").result(20)] == ["Chicago"]
     assert len(do(graph, lambda g: people.faces_of(g, kept))) == 2
     do(graph, lambda g: people.keep(g, Node("Person", {"name": "barack"}), [(1.0, vector("hanks"))], 8))
-    assert len(graph.find("Person", name="barack").result(20)) == 2  # another man of that name
+    assert len(graph.find("Person", name="barack").result(20)) == 2  # another man with the same name
 
 
-def test_faces_are_forgotten_alone_or_with_their_person(graph: Memory) -> None:
+def test_faces_can_be_forgotten_without_or_with_their_person(graph: Memory) -> None:
     person, _ = keep(graph, "Barack", "obama", "obama2")
     assert do(graph, lambda g: people.forget_faces(g, person)) == 2
     assert do(graph, people.stored) == [] and graph.get(person.id).result(20) is not None

@@ -1,4 +1,4 @@
-"""Finding the packages of the eyes."""
+"""Finding a Python with the packages that the vision worker needs."""
 
 import sys
 from pathlib import Path
@@ -9,13 +9,13 @@ from ravestate.errors import PlatformError
 from ravestate.modules.modality.visionio import places
 
 
-def test_the_setting_comes_first(tmp_path: Path) -> None:
+def test_the_python_in_the_settings_is_used_first(tmp_path: Path) -> None:
     assert places.eyes_python(Path(sys.executable)) == sys.executable
     with pytest.raises(PlatformError, match=r"there is no such file.*make eyes"):
         places.eyes_python(tmp_path / "python")
 
 
-def test_without_a_setting_the_environment_of_make_eyes_comes_first_and_then_this_one(
+def test_without_a_setting_the_python_of_make_eyes_comes_before_the_running_one(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     monkeypatch.setattr(places.sys, "prefix", str(tmp_path / ".venv"))

@@ -1,4 +1,7 @@
-"""People come, are recognised, tell their names, agree or refuse, leave and come back: real vectors, virtual time."""
+"""People come, tell their names, agree or refuse, leave, and are recognised later.
+
+The tests use real vectors and virtual time.
+"""
 
 from collections.abc import Iterator
 from contextlib import contextmanager
@@ -20,7 +23,7 @@ pytestmark = pytest.mark.usefixtures("reader")
 
 @contextmanager
 def agent(memory: Path, *modules: Any, **settings: Any) -> Iterator[Any]:
-    """An agent with eyes that greets, and learns names."""
+    """Simulate an agent that sees people, greets them, and learns their names."""
     given = {
         "visionio": {"source": "", **settings},
         "ontology": {"path": str(memory)},
@@ -36,7 +39,7 @@ def present(sim: Any) -> list[str | None]:
 
 
 def meet(sim: Any, stage: Stage, face: str, name: str, *, answer: str = "yes") -> None:
-    """A stranger comes, tells their name, and says whether the agent may remember their face."""
+    """Play a stranger who comes, tells their name, and says whether the agent may remember their face."""
     stage.show(sim, face)
     sim.say(f"My name is {name}.")
     stage.show(sim, face, seconds=5)
@@ -46,7 +49,7 @@ def meet(sim: Any, stage: Stage, face: str, name: str, *, answer: str = "yes") -
 
 
 def remembered(memory: Path) -> dict[str, int]:
-    """Name → number of faces in a memory that no agent has open."""
+    """Return the number of faces of each person in a memory that no agent has open."""
     opened = open_memory(ontology.Settings(path=memory))
     try:
         return {
@@ -57,7 +60,7 @@ def remembered(memory: Path) -> dict[str, int]:
         opened.close().result(20)
 
 
-def test_a_stranger_is_greeted_neutrally_and_by_name_next_time_also_after_a_restart(memory: Path) -> None:
+def test_a_stranger_is_greeted_without_a_name_and_at_the_next_visit_by_name(memory: Path) -> None:
     stage = Stage()
     with agent(memory) as sim:
         stage.show(sim, "obama")
@@ -112,7 +115,7 @@ def visionio_listener(heard: list[Node]) -> Any:
 
 
 @pytest.mark.parametrize("answer", ["no", "no, please don't", "I'd rather not"])
-def test_nothing_is_kept_without_a_yes(memory: Path, answer: str) -> None:
+def test_no_face_is_kept_after_a_no(memory: Path, answer: str) -> None:
     stage = Stage()
     with agent(memory) as sim:
         meet(sim, stage, "biden", "Joe", answer=answer)
@@ -122,7 +125,7 @@ def test_nothing_is_kept_without_a_yes(memory: Path, answer: str) -> None:
     assert remembered(memory) == {"Joe": 0}
 
 
-def test_a_person_who_does_not_answer_is_not_remembered(memory: Path) -> None:
+def test_the_face_of_a_person_who_does_not_answer_is_not_kept(memory: Path) -> None:
     stage = Stage()
     with agent(memory) as sim:
         stage.show(sim, "biden")
@@ -130,12 +133,12 @@ def test_a_person_who_does_not_answer_is_not_remembered(memory: Path) -> None:
         stage.show(sim, "biden", seconds=5)
         sim.say("the weather is nice")
         stage.show(sim, "biden", seconds=70, rate=1)
-        sim.say("yes")  # by now, the yes answers no question
+        sim.say("yes")  # too late: the question has expired
         stage.empty(sim)
     assert remembered(memory) == {"Joe": 0}
 
 
-def test_several_people_are_told_apart(memory: Path) -> None:
+def test_several_people_are_distinguished(memory: Path) -> None:
     stage = Stage()
     with agent(memory) as sim:
         meet(sim, stage, "obama", "Barack")
@@ -161,8 +164,8 @@ def test_a_face_that_is_lost_for_a_moment_is_the_same_visitor(memory: Path) -> N
         assert one.tracks == {1, 2}
 
 
-def test_a_face_vector_of_another_module_counts_as_well(memory: Path) -> None:
-    """A robot may bring its own recogniser."""
+def test_face_vectors_from_another_module_are_used_as_well(memory: Path) -> None:
+    """For example, a robot may have its own face recogniser."""
     ada = Node("Person", {"name": "Ada"})
     with agent(memory) as sim:
         for _ in range(3):
@@ -171,17 +174,17 @@ def test_a_face_vector_of_another_module_counts_as_well(memory: Path) -> None:
         assert present(sim) == ["Ada"] and "Ada" in sim.said[0]
 
 
-def test_a_face_that_is_seen_for_a_moment_is_no_visitor(memory: Path) -> None:
+def test_a_face_that_appears_only_for_a_moment_is_not_a_visitor(memory: Path) -> None:
     with agent(memory) as sim:
         stage = Stage()
         stage.show(sim, "obama", seconds=0.4)
         stage.empty(sim)
         assert sim.said == [] and present(sim) == []
-        assert sim.read(visionio.history) == ()  # their vectors are dropped
+        assert sim.read(visionio.history) == ()  # the vectors of the face have been dropped
 
 
-def test_two_people_who_change_places_are_noticed(memory: Path) -> None:
-    """The track goes on, because one face takes the place of the other."""
+def test_the_agent_notices_that_another_person_has_taken_someones_place(memory: Path) -> None:
+    """The new face appears at the same place, so it has the same track."""
     stage = Stage()
     with agent(memory) as sim:
         meet(sim, stage, "obama", "Barack")
@@ -194,7 +197,7 @@ def test_two_people_who_change_places_are_noticed(memory: Path) -> None:
         assert present(sim) == ["Joe"]
 
 
-def test_the_user_of_another_platform_is_the_person_before_the_camera(memory: Path) -> None:
+def test_the_user_of_another_platform_gets_the_name_of_the_person_before_the_camera(memory: Path) -> None:
     stage = Stage()
     with agent(memory) as sim:
         meet(sim, stage, "obama", "Barack")
@@ -208,12 +211,12 @@ def test_the_user_of_another_platform_is_the_person_before_the_camera(memory: Pa
         assert sim.read(persqa.who)["name"] == "Barack"
         stage.empty(sim)
         assert dict(sim.read(interloc.users)) == {"page": "Barack"}
-        stage.show(sim, "biden")  # another person sits down
+        stage.show(sim, "biden")  # another person sits down at the page
         assert dict(sim.read(interloc.users)) == {"page": None}
         assert sim.read(persqa.who) is None
 
 
-def test_a_user_who_tells_their_name_before_the_camera_goes_on_is_the_person_in_the_picture(memory: Path) -> None:
+def test_a_name_told_before_the_camera_is_on_applies_to_the_users_face(memory: Path) -> None:
     with agent(memory) as sim:
         stage = Stage()
         sim.put(interloc.users, {"page": None})
@@ -228,12 +231,12 @@ def test_a_user_who_tells_their_name_before_the_camera_goes_on_is_the_person_in_
         sim.say("yes")
         stage.show(sim, "obama")
         stage.empty(sim)
-        stage.show(sim, "biden")  # another person sits down
+        stage.show(sim, "biden")  # another person sits down at the page
         assert dict(sim.read(interloc.users)) == {"page": None}
     assert remembered(memory)["Barack"] >= 1
 
 
-def test_a_user_whose_name_the_platform_gives_without_a_node_is_the_person_in_the_picture(memory: Path) -> None:
+def test_the_name_that_a_platform_gives_a_user_applies_to_their_face(memory: Path) -> None:
     heard: list[Node] = []
     with agent(memory, visionio_listener(heard)) as sim:
         sim.put(interloc.users, {"page": "Barack"})
@@ -268,7 +271,7 @@ def remembered_now(sim: Any) -> dict[str, int]:
     }
 
 
-def test_forget_me_forgets_the_face_as_well(memory: Path) -> None:
+def test_the_request_forget_me_also_removes_the_face(memory: Path) -> None:
     stage = Stage()
     with agent(memory) as sim:
         meet(sim, stage, "obama", "Barack")
@@ -283,7 +286,7 @@ def test_forget_me_forgets_the_face_as_well(memory: Path) -> None:
         assert present(sim) == [None]
 
 
-def test_no_byte_of_a_forgotten_face_stays_in_the_file(memory: Path) -> None:
+def test_no_data_of_a_forgotten_face_stays_in_the_files(memory: Path) -> None:
     stage = Stage()
     with agent(memory) as sim:
         meet(sim, stage, "obama", "Barack")
@@ -311,9 +314,9 @@ def test_a_user_can_have_their_face_remembered(memory: Path) -> None:
         assert remembered_now(sim) == {"Tom": 1}
 
 
-def test_a_user_can_correct_the_agent_that_takes_them_for_another_person(memory: Path) -> None:
+def test_a_user_can_correct_an_agent_that_takes_them_for_another_person(memory: Path) -> None:
     stage = Stage()
-    with agent(memory, threshold=1.0) as sim:  # a threshold so high that all men count as one person
+    with agent(memory, threshold=1.0) as sim:  # with so high a threshold, the agent takes all men for one person
         meet(sim, stage, "obama", "Barack")
         stage.empty(sim)
         stage.show(sim, "biden")
@@ -330,7 +333,7 @@ def test_a_user_can_correct_the_agent_that_takes_them_for_another_person(memory:
 
 
 def test_a_user_can_correct_a_wrong_name_for_their_face_in_memory(memory: Path) -> None:
-    """Memory has a face under a wrong name. The agent moves the face to the person with the right name."""
+    """The agent removes the face from the person with the wrong name, and stores it for the one with the right name."""
     stage = Stage()
     with agent(memory) as sim:
         meet(sim, stage, "obama", "Joe")
@@ -364,7 +367,7 @@ def test_a_user_can_take_back_a_name_that_they_have_told(memory: Path) -> None:
 
 
 def test_two_people_with_equal_names_and_similar_faces_become_one(memory: Path) -> None:
-    """In bad light, the agent took Barack for a stranger, and stored him as a second person of that name."""
+    """The agent did not recognise Barack, as in bad light, and so memory has a second person with this name."""
     stage = Stage()
     with agent(memory) as sim:
         meet(sim, stage, "obama", "Barack")
@@ -385,7 +388,7 @@ def test_two_people_with_equal_names_and_similar_faces_become_one(memory: Path) 
         assert len(memory_now.related(double, people.RELATION).result(20)) == 2
 
 
-def test_a_face_is_refreshed_after_a_visit_but_only_of_a_person_who_agreed(memory: Path) -> None:
+def test_after_visits_the_agent_keeps_new_views_of_a_person_who_agreed(memory: Path) -> None:
     stage = Stage()
     with agent(memory) as sim:
         meet(sim, stage, "obama", "Barack")
@@ -394,7 +397,7 @@ def test_a_face_is_refreshed_after_a_visit_but_only_of_a_person_who_agreed(memor
             stage.show(sim, name)
             stage.empty(sim)
         count = remembered_now(sim)["Barack"]
-        assert 2 <= count <= len(OBAMA)  # the same photo tells nothing new
+        assert 2 <= count <= len(OBAMA)  # a photo that was shown twice adds no view
 
 
 def test_without_memory_people_come_and_go_but_have_no_names(tmp_path: Path, caplog: pytest.LogCaptureFixture) -> None:
@@ -410,7 +413,7 @@ def test_without_memory_people_come_and_go_but_have_no_names(tmp_path: Path, cap
         assert present(sim) == []
 
 
-def test_a_missing_camera_is_reported_once_and_the_conversation_goes_on(
+def test_a_missing_camera_is_reported_once_and_the_conversation_continues(
     memory: Path, caplog: pytest.LogCaptureFixture, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     from ravestate.modules.modality.visionio import watching
@@ -423,7 +426,7 @@ def test_a_missing_camera_is_reported_once_and_the_conversation_goes_on(
     assert caplog.text.count("there is no camera") == 1
 
 
-def test_missing_packages_are_reported_with_the_remedy(
+def test_missing_packages_are_reported_with_the_command_that_installs_them(
     memory: Path, caplog: pytest.LogCaptureFixture, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     from ravestate.modules.modality.visionio import eye
@@ -444,7 +447,7 @@ def test_the_agent_still_answers_when_it_sees_many_faces(memory: Path) -> None:
     everybody = [f"{number}-{name}={name}" for number in range(2) for name in faces()]
     with agent(memory) as sim:
         stage.show(sim, *everybody, seconds=4)
-        assert len(sim.read(interloc.users)) == 9  # two photos of a person are one person
+        assert len(sim.read(interloc.users)) == 9  # several photos of a person count as one person
         sim.say("hello")
         stage.show(sim, *everybody, seconds=1)
         assert sim.read(rawio.output)

@@ -1,4 +1,4 @@
-"""A whole scene as a video file, end to end: the real worker, memory, greetings; and again after a restart."""
+"""A scene in a video file, with the real vision worker, memory and greetings, also after a restart."""
 
 from pathlib import Path
 
@@ -38,13 +38,13 @@ out.release()
 
 @pytest.fixture(scope="module")
 def scene(tmp_path_factory: pytest.TempPathFactory) -> Path:
-    """A room of 45 s: a man comes (2 s), leaves (14 s), comes back with another man (26 s); both leave (34 s)."""
+    """A video of 45 s: a man comes (at 2 s), leaves (14 s), and returns with another man (26 s). Both leave (34 s)."""
     file = tmp_path_factory.mktemp("scene") / "scene.mp4"
     make(SCENE, photo("obama"), photo("obama2"), photo("biden"), file)
     return file
 
 
-def test_people_are_recognised_in_a_video_and_again_after_a_restart(scene: Path, memory: Path) -> None:
+def test_a_person_is_recognised_in_a_video_and_again_after_a_restart(scene: Path, memory: Path) -> None:
     settings = {
         "visionio": {"source": str(scene), "fps": 2},
         "ontology": {"path": str(memory)},
@@ -64,7 +64,7 @@ def test_people_are_recognised_in_a_video_and_again_after_a_restart(scene: Path,
         sim.advance(12)
         assert not sim.read(interloc.users)
         before = len(sim.said)
-        sim.advance(6)  # 31 s: he is back, with a stranger
+        sim.advance(6)  # at 31 s, the man is back with a stranger
         assert sorted(map(str, sim.read(interloc.users).values())) == ["Barack", "None"]
         assert any("Barack" in text for text in sim.said[before:])
         sim.advance(20)  # the video is over

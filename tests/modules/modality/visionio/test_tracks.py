@@ -1,4 +1,4 @@
-"""A track follows a face from picture to picture, and tells when the face needs a new vector."""
+"""A track follows a face through the pictures, and says when the worker must compute a new vector for it."""
 
 from typing import Any
 
@@ -17,7 +17,7 @@ def needs_vector(tracks: Tracks, now: float) -> bool:
     return not known["fresh"]
 
 
-def test_a_face_gets_a_number_and_keeps_it() -> None:
+def test_a_face_gets_a_track_number_and_keeps_it() -> None:
     tracks = Tracks()
     [(one, new)] = tracks.update([seen()], 0.0)
     assert new and one.number == 1 and one.vector == (0.5,) * 128
@@ -36,11 +36,11 @@ def test_a_face_needs_vectors_until_enough_agree_and_later_only_at_intervals() -
         assert not needs_vector(tracks, number / 10)
     assert needs_vector(tracks, 0.2 + REFRESH)
     tracks.update([seen(1)], 4.0)
-    one.recognise(None, None, 0.3)  # somebody else is there
+    one.recognise(None, None, 0.3)  # now another person is there
     assert needs_vector(tracks, 4.05)
 
 
-def test_a_badly_visible_face_gets_only_one_vector_each_second_after_some_tries() -> None:
+def test_after_some_tries_a_badly_visible_face_gets_only_one_vector_per_second() -> None:
     tracks = Tracks()
     for number in range(TRIES):
         [(one, _)] = tracks.update([seen(1 if number else None, quality=0.1)], number / 10)
@@ -49,24 +49,24 @@ def test_a_badly_visible_face_gets_only_one_vector_each_second_after_some_tries(
     assert not needs_vector(tracks, TRIES / 10) and needs_vector(tracks, TRIES / 10 + 1.0)
 
 
-def test_a_face_that_is_gone_loses_its_number() -> None:
+def test_a_face_that_has_gone_loses_its_track_number() -> None:
     tracks = Tracks()
     tracks.update([seen()], 0.0)
     tracks.update([], LOST)
     assert len(tracks.request(LOST)["known"]) == 1
     tracks.update([], LOST + 0.1)
     assert tracks.request(LOST + 0.1)["known"] == []
-    [(one, _)] = tracks.update([seen(1)], LOST + 0.2)  # an old number of a late answer
+    [(one, _)] = tracks.update([seen(1)], LOST + 0.2)  # a late result with an old number
     assert one.number == 2
 
 
-def test_a_face_after_a_pause_of_the_camera_gets_a_new_number() -> None:
+def test_after_a_pause_of_the_camera_no_track_is_known() -> None:
     tracks = Tracks()
     tracks.update([seen()], 0.0)
     assert tracks.request(LOST + 0.1)["known"] == []
 
 
-def test_a_thorough_search_is_due_each_second() -> None:
+def test_a_thorough_search_is_requested_once_per_second() -> None:
     tracks = Tracks()
     assert tracks.request(0.0)["thorough"] == 1
     tracks.update([], 0.0)

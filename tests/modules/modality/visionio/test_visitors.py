@@ -1,4 +1,4 @@
-"""Faces that were seen over time become decisions, tracks and visitors. Short vectors are enough for these tests."""
+"""Decisions about the faces of a track, and the visitors to whom tracks belong. The tests use short vectors."""
 
 from ravestate.modules.meta.ontology import Node
 from ravestate.modules.modality.visionio.face import FaceVec
@@ -27,7 +27,7 @@ def decided(*faces: FaceVec) -> Decision | None:
     return decide(faces, faces[-1], sure=3, quality=0.3)
 
 
-def test_three_vectors_in_a_row_must_agree() -> None:
+def test_a_decision_needs_three_vectors_in_a_row_that_agree() -> None:
     assert decided(face(0, ADA), face(0, ADA)) is None
     assert decided(face(0), face(0, ADA), face(0, ADA)) is None
     assert decided(face(0, BOB), face(0, ADA), face(0, BOB), face(0, ADA)) is None
@@ -35,22 +35,23 @@ def test_three_vectors_in_a_row_must_agree() -> None:
     assert (nobody := decided(face(0), face(0), face(0))) is not None and nobody.person is None
 
 
-def test_other_tracks_and_bad_vectors_do_not_count() -> None:
+def test_vectors_of_other_tracks_and_of_low_quality_do_not_count_for_a_decision() -> None:
     assert decided(face(0, ADA), face(0, ADA, track=2), face(0, ADA)) is None
     assert decided(face(0, ADA), face(0, ADA, quality=0.1), face(0, ADA)) is None
 
 
-def test_a_face_that_is_never_seen_well_counts_as_unknown_after_a_while() -> None:
+def test_a_face_that_is_never_clearly_visible_counts_as_unknown_after_a_while() -> None:
     bad = [face(0, ADA, quality=0.1, time=t) for t in (0.0, 1.0, WAIT)]
     assert decided(*bad[:2]) is None
     assert (nobody := decided(*bad)) is not None and nobody.person is None
 
 
-def test_a_visitor_keeps_the_best_vectors_that_differ() -> None:
+def test_a_visitor_keeps_the_best_of_similar_vectors() -> None:
     one = Visitor("a", ADA)
     for x, quality in ((0.0, 0.5), (0.01, 0.9), (0.3, 0.4), (0.5, 0.1), (0.9, 0.9)):
         one = one.met(face(x, quality=quality), least=0.3, threshold=0.5)
-    assert one.vectors == ((0.9, (0.01, 0.0)), (0.4, (0.3, 0.0)))  # 0.5 was badly visible; 0.9 is another face
+    # Not 0.5, which was hardly visible, and not 0.9, which is another face.
+    assert one.vectors == ((0.9, (0.01, 0.0)), (0.4, (0.3, 0.0)))
     assert one.good(0.5) == ((0.9, (0.01, 0.0)),)
     assert best([(0.1 * n, (float(n),)) for n in range(20)], 3) == (
         (0.1 * 19, (19.0,)),
@@ -66,11 +67,11 @@ def test_a_new_track_is_assigned_to_a_visitor_by_memory_or_by_its_vectors() -> N
     assert whose(here, face(3.0), Decision(ADA), 0.5) is ada
     assert whose(here, face(0.35), Decision(None), 0.5) is stranger
     assert whose(here, face(0.1), Decision(None), 0.5) is ada
-    assert whose(here, face(0.3), Decision(BOB), 0.5) is stranger  # recognised only now
+    assert whose(here, face(0.3), Decision(BOB), 0.5) is stranger  # the stranger is recognised only now
     assert whose(here, face(3.0), Decision(None), 0.5) is None
 
 
-def test_the_visitor_of_a_track_the_nearest_visitor_and_absent_visitors_are_found() -> None:
+def test_visitors_are_found_by_track_by_distance_to_the_camera_and_by_absence() -> None:
     far = Visitor("f", ADA, seen=1.0, tracks=frozenset({1}))
     near = Visitor("n", BOB, seen=9.0, tracks=frozenset({2, 3}))
     here = {"f": far, "n": near}
@@ -80,7 +81,7 @@ def test_the_visitor_of_a_track_the_nearest_visitor_and_absent_visitors_are_foun
     assert gone(here, 6.0, 4.0) == [far]
 
 
-def test_texts_of_records_have_no_vectors() -> None:
-    """Traces show these texts."""
+def test_the_reprs_of_faces_and_visitors_contain_no_vectors() -> None:
+    """Traces contain these texts."""
     assert "Ada" in repr(face(0.123456, ADA)) and "0.123456" not in repr(face(0.123456, ADA))
     assert "0.98765" not in repr(Visitor("a", ADA, vectors=((1.0, (0.98765,)),)))

@@ -1,4 +1,4 @@
-"""Watching a camera: the log of its failures, and the rate of looks."""
+"""Watching a camera: how failures are reported, and how often the agent looks."""
 
 import logging
 from pathlib import Path
@@ -19,7 +19,7 @@ LOG = logging.getLogger("test")
 
 
 class Blind:
-    """An eye whose camera fails a few times."""
+    """An eye whose camera fails `faults` times and then shows black pictures."""
 
     def __init__(self, faults: int, live: bool) -> None:
         self.faults, self.live = faults, live
@@ -42,7 +42,7 @@ class Blind:
 
 
 async def watched(monkeypatch: pytest.MonkeyPatch, eye: Blind, looks: int) -> list[float]:
-    """Watch for some looks; return the seconds that the watch waited after each."""
+    """Look `looks` times; return the time for which the watch waited after each look (seconds)."""
     monkeypatch.setattr(watching, "Eye", lambda _: eye)
     watch = Watch(visionio.Settings(source="/dev/video0", fps=10, load=0.5), None, LOG)
     waits: list[float] = []
@@ -71,7 +71,7 @@ def run(coroutine: Any) -> Any:
     return asyncio.run(coroutine)
 
 
-def test_a_lost_camera_is_reported_once_and_tried_again(
+def test_a_lost_camera_is_reported_once_and_reopened_until_it_works(
     monkeypatch: pytest.MonkeyPatch, caplog: pytest.LogCaptureFixture
 ) -> None:
     eye = Blind(8, live=True)
@@ -82,7 +82,7 @@ def test_a_lost_camera_is_reported_once_and_tried_again(
     assert caplog.text.count("is it unplugged?") == 1 and caplog.text.count("sees again") == 1
 
 
-def test_a_file_that_fails_again_and_again_is_given_up(
+def test_the_agent_gives_up_a_file_that_fails_repeatedly(
     monkeypatch: pytest.MonkeyPatch, caplog: pytest.LogCaptureFixture
 ) -> None:
     waits = run(watched(monkeypatch, Blind(100, live=False), 20))
@@ -96,7 +96,7 @@ def test_black_pictures_are_reported_once(monkeypatch: pytest.MonkeyPatch, caplo
 
 
 def looks_of(*spent: float) -> list[float]:
-    """Return the start times of looks that take the given seconds, at 10 looks a second and a load of 0.5."""
+    """Return the start times of looks that take the given seconds, with 10 looks per second and a load of 0.5."""
 
     async def began() -> list[float]:
         now, found = 0.0, list[float]()
@@ -116,7 +116,7 @@ def looks_of(*spent: float) -> list[float]:
     return run(began())
 
 
-def test_a_slow_machine_looks_less_often() -> None:
+def test_on_a_slow_machine_the_agent_looks_less_often() -> None:
     assert looks_of(0.3, 0.3, 0.3, 0.0) == pytest.approx([0.0, 0.6, 1.2, 1.8])
 
 
@@ -127,7 +127,9 @@ def test_one_slow_look_in_a_second_does_not_lower_the_rate() -> None:
     assert began[:4] == pytest.approx([0.0, 0.18, 0.22, 0.3])
 
 
-def test_a_damaged_picture_in_a_folder_is_left_out(tmp_path: Path, caplog: pytest.LogCaptureFixture) -> None:
+def test_a_damaged_picture_in_a_folder_is_reported_and_skipped(
+    tmp_path: Path, caplog: pytest.LogCaptureFixture
+) -> None:
     for number in (0, 1, 3, 4, 5):
         (tmp_path / f"{number}.jpg").write_bytes(photo("hanks").read_bytes())
     (tmp_path / "2.jpg").write_bytes(b"broken")
@@ -140,7 +142,7 @@ def test_a_damaged_picture_in_a_folder_is_left_out(tmp_path: Path, caplog: pytes
 
 
 def test_the_agent_looks_at_the_newest_picture_of_a_platform(tmp_path: Path) -> None:
-    """Only the newest is looked at; a closed camera means that everybody has left."""
+    """The agent skips older pictures. When the camera is closed, all visitors have left."""
     frames = visionio.Frames()
     settings = {"visionio": {"source": ""}, "ontology": {"path": str(tmp_path / "m.lbug")}}
     data = photo("hanks").read_bytes()
@@ -154,7 +156,7 @@ def test_the_agent_looks_at_the_newest_picture_of_a_platform(tmp_path: Path) -> 
         frames.put(b"broken")
         sim.advance(0.3)
         assert frames.dropped == 3
-        sim.advance(10)  # the telephone's screen is locked
+        sim.advance(10)  # no pictures come, as if the screen of a telephone were locked
         assert not sim.read(visionio.visitors)
         for _ in range(3):
             frames.put(data)
@@ -166,7 +168,7 @@ def test_the_agent_looks_at_the_newest_picture_of_a_platform(tmp_path: Path) -> 
 
 
 def test_the_agent_looks_through_the_users_camera(tmp_path: Path) -> None:
-    """The agent asks for pictures at its own pace, shows the faces on the page, and notices that the camera goes off."""
+    """The agent asks for pictures at its own pace, marks the faces on the page, and notices when the camera goes off."""
     user = UserCamera(photo("hanks").read_bytes())
     settings = {"visionio": {"source": "", "fps": 5}, "ontology": {"path": str(tmp_path / "m.lbug")}}
     with simulate(visionio.module, settings=settings) as sim:
@@ -208,7 +210,7 @@ def test_an_agent_that_cannot_see_turns_the_users_camera_off(
     assert caplog.text.count("`make eyes`") == 1
 
 
-def test_a_rule_that_listens_to_poses_gets_them(tmp_path: Path) -> None:
+def test_a_rule_can_react_to_poses_of_bodies(tmp_path: Path) -> None:
     heard: list[visionio.Pose] = []
     dancer = rs.Module("dancer", requires=[visionio])
 
@@ -227,7 +229,7 @@ def test_a_rule_that_listens_to_poses_gets_them(tmp_path: Path) -> None:
     body, nobody = heard[0].landmarks, heard[-1].landmarks
     assert body is not None and len(body) == 33 and all(len(point) == 4 for point in body)
     nose, hip = body[0], body[24]
-    assert nose[1] < hip[1] and nose[3] > 0.9  # upright, and in sight
+    assert nose[1] < hip[1] and nose[3] > 0.9  # the nose is above the hip and clearly visible
     assert nobody is None
 
 

@@ -24,5 +24,5 @@ pytestmark = pytest.mark.usefixtures("reader")
         ("", ""),
     ],
 )
-def test_a_wish_about_a_face_is_understood(text: str, wish: str) -> None:
+def test_wish_of_recognises_requests_about_a_face(text: str, wish: str) -> None:
     assert wish_of(text) == wish

@@ -21,8 +21,8 @@ def test_every_face_in_the_photos_is_found_once() -> None:
     assert set(faces()) == {*OBAMA, *OTHERS}
 
 
-def test_different_people_are_never_confused() -> None:
-    """The table of distances: one man on six photos, and eight others."""
+def test_the_distances_of_different_people_are_above_the_threshold() -> None:
+    """Compare all pairs of six photos of one man and photos of eight other people."""
     vectors = {name: face.vector for name, face in faces().items()}
     same = [dist(vectors[one], vectors[other]) for one, other in combinations(OBAMA, 2)]
     different = [dist(vectors[one], vectors[other]) for one in OBAMA for other in OTHERS]
@@ -36,7 +36,7 @@ def test_a_vector_has_128_numbers_and_a_quality() -> None:
         assert len(face.vector) == 128 and 0.1 <= face.quality <= 1
 
 
-def test_a_face_that_is_known_gets_no_vector(monkeypatch: pytest.MonkeyPatch) -> None:
+def test_the_worker_computes_no_new_vector_for_a_known_face(monkeypatch: pytest.MonkeyPatch) -> None:
     data, box = photo("biden").read_bytes(), faces()["biden"].box
     [known] = look(data, known=[{"track": 7, "box": box, "fresh": True}])["faces"]
     assert (known["track"], known["vector"], known["quality"]) == (7, None, None)
@@ -46,13 +46,13 @@ def test_a_face_that_is_known_gets_no_vector(monkeypatch: pytest.MonkeyPatch) ->
     assert new["track"] is None and len(new["vector"]) == 128
 
 
-def test_a_look_computes_a_few_vectors_only() -> None:
+def test_a_request_limits_the_number_of_vectors() -> None:
     found = look(photo("six").read_bytes(), most=2)["faces"]
     assert [face["vector"] is not None for face in found] == [True, True, False, False, False, False]
 
 
-def test_20_faces_in_one_picture_are_found(tmp_path: Path) -> None:
-    """24 faces, of 46 to 66 pixels each in the picture that is searched."""
+def test_at_least_20_of_24_faces_in_a_picture_are_found(tmp_path: Path) -> None:
+    """The faces are 46 to 66 pixels wide in the scaled picture that the worker searches."""
     file = tmp_path / "crowd.jpg"
     make(
         """
@@ -66,7 +66,7 @@ cv2.imwrite(a[1], np.vstack([np.hstack([six, six]), np.hstack([six, six])]))
     assert sum(face["vector"] is not None for face in seen["faces"]) == 3
 
 
-def test_a_picture_of_8k_is_scaled_down(tmp_path: Path) -> None:
+def test_a_face_in_an_8k_picture_is_found_at_its_place(tmp_path: Path) -> None:
     file = tmp_path / "large.jpg"
     make("cv2.imwrite(a[1], cv2.resize(cv2.imread(a[0]), (7680, 9595)))", photo("obama"), file)
     seen = look(file.read_bytes())
@@ -92,8 +92,8 @@ def test_the_worker_reads_raw_pixels(tmp_path: Path) -> None:
 
 
 @pytest.mark.parametrize("encoding", ["bgr8", "rgba8", "mono8"])
-def test_the_worker_reads_a_picture_of_ros(tmp_path: Path, encoding: str) -> None:
-    """The rows have more bytes than their pixels."""
+def test_the_worker_reads_pictures_from_ros(tmp_path: Path, encoding: str) -> None:
+    """The rows are padded, as ROS allows."""
     file = tmp_path / "raw"
     make(
         """
@@ -127,10 +127,10 @@ open(a[1], "wb").write(np.hstack([rows, np.zeros((112, 5), np.uint8)]).tobytes()
 def test_a_corrupt_picture_is_reported(data: bytes, shape: tuple[int, int] | None, why: str) -> None:
     with pytest.raises(PlatformError, match=why):
         eye().look_now(["faces"], {}, frame=Frame(data, shape))
-    assert look(photo("biden").read_bytes())["faces"]  # the worker lives on
+    assert look(photo("biden").read_bytes())["faces"]  # the worker still works
 
 
-def test_a_picture_that_unpacks_to_gigabytes_is_refused(tmp_path: Path) -> None:
+def test_a_compressed_picture_of_gigabytes_is_refused(tmp_path: Path) -> None:
     import struct
     import zlib
 

@@ -1,4 +1,4 @@
-"""The camera of a user's page, for tests: it has a picture whenever the agent asks for one."""
+"""A stand-in for the camera of a user's page. It has a picture whenever the agent asks for one."""
 
 from __future__ import annotations
 
@@ -12,10 +12,10 @@ class UserCamera:
     """A `rawio.Camera` that always shows the same picture.
 
     Attributes:
-        picture: A JPEG; None once the camera is off.
-        asked: The number of pictures that the agent has asked for.
-        marks: All faces that the agent has shown.
-        refused: Why the agent has turned the camera off.
+        picture: A JPEG picture; None when the camera is off.
+        asked: How often the agent has asked for a picture.
+        marks: The lists of faces that the agent has marked, in order.
+        refused: The reasons for which the agent has turned the camera off.
     """
 
     def __init__(self, picture: bytes) -> None:

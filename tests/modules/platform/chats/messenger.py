@@ -1,4 +1,4 @@
-"""A messenger in memory, in virtual time: it keeps the agent's messages, and fails as a test wants."""
+"""A stand-in for a messenger, in memory and virtual time. It keeps the agent's messages, and fails on demand."""
 
 import asyncio
 import contextlib
@@ -30,7 +30,7 @@ async def greet(ctx: rs.RuleContext) -> None:
 
 
 class Post:
-    """A carrier that keeps the messages; `failures` are raised first, one for each attempt."""
+    """A stand-in for a messenger. Each attempt to use it raises the next of `failures`, until none is left."""
 
     longest = 100
     rate = 1000.0
@@ -75,7 +75,7 @@ class Post:
         return emoji == "👍"
 
     async def said(self, count: int) -> list[str]:
-        """Return the agent's messages, once there are `count`."""
+        """Wait until there are `count` messages of the agent; return them as "chat: text"."""
         async with self.news:
             await self.news.wait_for(lambda: len(self.sent) >= count)
         return [f"{each.chat}: {each.text}" for each in self.sent]
@@ -85,7 +85,7 @@ _keys = itertools.count()
 
 
 def letter(text: str = "", chat: str = "a", **fields: Any) -> Incoming:
-    """Return a message of the person of a chat."""
+    """Return a message from the user of a chat."""
     n = str(next(_keys))
     base: dict[str, Any] = {"key": n, "id": n, "person": Person(chat, chat.upper())}
     return Incoming(**{**base, "chat": chat, "text": text, **fields})
@@ -93,7 +93,7 @@ def letter(text: str = "", chat: str = "a", **fields: Any) -> Incoming:
 
 @contextlib.asynccontextmanager
 async def room(path: Path, post: Post, *modules: Any, **settings: Any) -> AsyncGenerator[Room]:
-    """A room of an agent, which greets and repeats if no modules are given."""
+    """Open the room of an agent. Without modules, the agent greets users and repeats their messages."""
     agent = Agent(*(modules or (parrot,)), letters, settings={"letters": {"path": path / "letters.db", **settings}})
     async with Room(agent, "letters", post, "me") as opened:
         yield opened

@@ -1,4 +1,4 @@
-"""An agent on a messenger in a process of its own."""
+"""An agent on a messenger, in a separate process."""
 
 import asyncio
 import contextlib
@@ -8,12 +8,12 @@ import sys
 
 
 class AgentProcess:
-    """An agent in a process of its own: ``async with`` starts it, and kills it at the end.
+    """An agent in a separate process. ``async with`` starts the process, and kills it at the end.
 
     Args:
-        platform: The platform's name.
-        module: The agent's other module, as on the command line.
-        settings: The settings of the platform; they go through the environment.
+        platform: The name of the platform.
+        module: The other module of the agent, as on the command line.
+        settings: The settings of the platform, passed as environment variables.
     """
 
     def __init__(self, platform: str, module: str, **settings: object) -> None:
@@ -36,7 +36,7 @@ class AgentProcess:
         await self.end(signal.SIGKILL)
 
     async def end(self, signal: signal.Signals) -> int:
-        """Send a signal, and return the exit code."""
+        """Send a signal to the process, and return its exit code."""
         assert self.process is not None
         with contextlib.suppress(ProcessLookupError):
             self.process.send_signal(signal)

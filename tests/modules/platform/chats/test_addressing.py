@@ -22,7 +22,7 @@ def test_a_command_counts_only_as_the_whole_message(text: str, name: str | None)
      ("Robin, how are you?", True, False, (None, "Robin, how are you?")),
      ("@robin_bot: how are you?", True, False, (None, "how are you?"))],
 )  # fmt: skip
-def test_in_a_group_a_message_is_for_the_agent_if_it_is_addressed(
+def test_in_a_group_the_agent_gets_only_messages_that_address_it(
     text: str, group: bool, called: bool, found: object
 ) -> None:
     assert addressed(text, ("@robin_bot",), ("Robin",), group=group, called=called) == found
@@ -33,7 +33,7 @@ def test_in_a_group_a_message_is_for_the_agent_if_it_is_addressed(
     [("Robin, hello", True), ("hello robin!", True), ("the robins sing", False), ("", False),
      ("ask @robin_bot", True), ("ask @robin_bottle", False)],
 )  # fmt: skip
-def test_a_name_is_a_word_of_its_own(text: str, found: bool) -> None:
+def test_mentions_finds_a_name_only_as_a_whole_word(text: str, found: bool) -> None:
     assert mentions(text, ("Robin", "@robin_bot", "")) is found
 
 
@@ -42,12 +42,12 @@ def test_a_name_is_a_word_of_its_own(text: str, found: bool) -> None:
     [("@robin_bot, hello", "hello"), ("hello @Robin_Bot", "hello"), ("hello", "hello"),
      ("write to me@robin_bot.org", "write to me@robin_bot.org")],
 )  # fmt: skip
-def test_a_mention_is_cut_out(text: str, rest: str) -> None:
+def test_without_mention_removes_the_mention_from_a_text(text: str, rest: str) -> None:
     assert without_mention(text, "@robin_bot") == rest
 
 
 @pytest.mark.parametrize(
     ("text", "is_one"), [("👍", True), ("🇩🇪", True), ("👍🏽", True), ("☹️", True), ("a", False), ("🎈 ok", False)]
 )
-def test_a_message_of_one_emoji_is_recognised(text: str, is_one: bool) -> None:
+def test_is_emoji_recognises_a_single_emoji(text: str, is_one: bool) -> None:
     assert is_emoji(text) is is_one

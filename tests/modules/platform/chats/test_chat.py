@@ -1,4 +1,4 @@
-"""Chats with slow answers, chats that close during an answer, groups, and a file that cannot be written."""
+"""Chats: slow answers, chats that close during an answer, groups, edits, and a file that cannot be written."""
 
 import contextlib
 from collections.abc import Generator
@@ -35,7 +35,7 @@ async def greet(ctx: rs.RuleContext) -> None:
 
 
 @in_virtual_time
-async def test_a_user_who_blocks_the_agent_during_a_slow_answer_ends_only_their_own_chat(tmp_path: Path) -> None:
+async def test_a_user_who_blocks_the_agent_during_an_answer_ends_only_their_own_chat(tmp_path: Path) -> None:
     post = Post()
     async with room(tmp_path, post, slow) as opened:
         opened.receive([letter("one", "a"), letter("two", "b")])
@@ -48,7 +48,7 @@ async def test_a_user_who_blocks_the_agent_during_a_slow_answer_ends_only_their_
 
 
 @in_virtual_time
-async def test_a_send_that_is_forbidden_during_a_slow_answer_ends_only_that_chat(tmp_path: Path) -> None:
+async def test_a_refusal_of_the_messenger_during_a_slow_answer_ends_only_that_chat(tmp_path: Path) -> None:
     post = Post()
     async with room(tmp_path, post, slow, greeter) as opened:
         post.failures += [DeliveryError("blocked", gone=True)]
@@ -60,7 +60,7 @@ async def test_a_send_that_is_forbidden_during_a_slow_answer_ends_only_that_chat
 
 
 @in_virtual_time
-async def test_a_user_who_leaves_and_returns_at_once_is_answered(tmp_path: Path) -> None:
+async def test_a_user_who_leaves_and_returns_at_once_gets_an_answer(tmp_path: Path) -> None:
     post = Post()
     async with room(tmp_path, post, slow) as opened:
         opened.receive([letter(kind="left"), letter("I am back")])
@@ -77,7 +77,7 @@ async def test_a_user_who_leaves_and_returns_at_once_is_answered(tmp_path: Path)
 
 
 class Leisurely(Post):
-    """A messenger that takes 2 s to say that the chat is closed."""
+    """A messenger that reports only after 2 s that the chat is closed."""
 
     async def send(self, message: Outgoing, again: bool) -> str:
         if message.text == "one":
@@ -146,7 +146,7 @@ def test_a_question_is_answered_even_if_another_person_asks_to_be_forgotten(tmp_
 
 
 @in_virtual_time
-async def test_a_newcomer_who_changes_a_message_that_is_not_heard_yet_is_greeted(tmp_path: Path) -> None:
+async def test_a_newcomer_who_edits_their_first_message_before_it_is_heard_is_greeted(tmp_path: Path) -> None:
     post = Post()
     async with room(tmp_path, post) as opened:
         message = letter("tee")
@@ -169,8 +169,8 @@ def not_writable(opened: Room) -> Generator[None]:
 
 
 @pytest.mark.parametrize("delay", [0.0, 1.0, 2.99])
-def test_a_file_that_cannot_be_written_delays_an_answer_and_loses_none(tmp_path: Path, delay: float) -> None:
-    """The file fails before the agent hears the message, while it thinks, or as it answers."""
+def test_a_file_that_cannot_be_written_delays_an_answer_but_does_not_lose_it(tmp_path: Path, delay: float) -> None:
+    """The file becomes unwritable before the agent hears the message, while it thinks, or when it answers."""
 
     @in_virtual_time
     async def test() -> None:
@@ -193,7 +193,7 @@ def test_a_file_that_cannot_be_written_delays_an_answer_and_loses_none(tmp_path:
 
 
 @in_virtual_time
-async def test_an_utterance_that_answers_no_message_is_sent_once_the_file_can_be_written(tmp_path: Path) -> None:
+async def test_an_unasked_utterance_is_sent_as_soon_as_the_file_can_be_written_again(tmp_path: Path) -> None:
     post = Post()
     herald = rs.Module("herald", requires=(rawio,))
     news = herald.signal("news", input=True)

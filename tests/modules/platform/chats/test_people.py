@@ -1,5 +1,4 @@
-"""The agent knows people by their accounts: it does not confuse two people with one name, and knows a person again
-later."""
+"""The agent recognises people by their accounts, even after a restart, and does not confuse people of the same name."""
 
 import asyncio
 from pathlib import Path
@@ -12,7 +11,7 @@ from ravestate.runtime.agent import Agent
 ADA, OTHER = Person("1", "Ada"), Person("2", "Ada")
 
 
-def test_a_stranger_of_the_same_name_hears_nothing_about_the_first_person(tmp_path: Path) -> None:
+def test_a_stranger_with_the_same_name_learns_nothing_about_the_first_person(tmp_path: Path) -> None:
     async def talk(*said: tuple[Person, str]) -> list[str]:
         settings = {"ontology": {"path": tmp_path / "memory.lbug"}, "letters": {"path": tmp_path / "letters.db"}}
         post = Post()

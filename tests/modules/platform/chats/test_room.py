@@ -1,4 +1,4 @@
-"""Rooms: chats that rest and go on again, each with a context of its own; failures; people."""
+"""Rooms: chats with separate contexts, which rest and resume; failures of the messenger; people."""
 
 import asyncio
 import itertools
@@ -14,7 +14,7 @@ from ravestate.modules.platform.chats import DeliveryError, Outgoing, Person
 
 
 @in_virtual_time
-async def test_each_chat_has_a_context_of_its_own(tmp_path: Path) -> None:
+async def test_each_chat_has_a_separate_context(tmp_path: Path) -> None:
     counter = rs.Module("counter", requires=(rawio,))
     count = counter.slot("count", 0)
 
@@ -31,7 +31,7 @@ async def test_each_chat_has_a_context_of_its_own(tmp_path: Path) -> None:
 
 
 @in_virtual_time
-async def test_a_silent_chat_rests_and_goes_on_without_a_greeting(tmp_path: Path) -> None:
+async def test_a_silent_chat_rests_and_later_resumes_without_a_greeting(tmp_path: Path) -> None:
     post = Post()
     async with room(tmp_path, post, rest=60.0) as opened:
         opened.receive([letter("one")])
@@ -44,7 +44,7 @@ async def test_a_silent_chat_rests_and_goes_on_without_a_greeting(tmp_path: Path
 
 
 @in_virtual_time
-async def test_beyond_the_limit_the_chat_that_was_silent_longest_rests(tmp_path: Path) -> None:
+async def test_above_the_limit_the_chat_that_has_been_silent_longest_rests(tmp_path: Path) -> None:
     post = Post()
     async with room(tmp_path, post, chats=2) as opened:
         for n, name in enumerate("abc", start=1):
@@ -71,7 +71,7 @@ async def test_many_new_chats_at_once_are_soon_reduced_to_the_limit(tmp_path: Pa
 
 
 @in_virtual_time
-async def test_a_message_that_came_twice_is_heard_once(tmp_path: Path) -> None:
+async def test_the_agent_hears_a_message_that_is_delivered_twice_only_once(tmp_path: Path) -> None:
     post = Post()
     message = letter("one")
     async with room(tmp_path, post, rs.Module("quiet", requires=(rawio,)), parrot) as opened:
@@ -116,7 +116,7 @@ async def test_a_slow_answer_may_be_interrupted(tmp_path: Path) -> None:
         await past(5.0)
         opened.receive([letter("stop")])
         assert await post.said(1) == ["a: You said stop."]
-        assert post.shown  # the chat shows that the agent is writing
+        assert post.shown  # the chat has shown that the agent is writing
 
 
 @in_virtual_time
@@ -137,7 +137,7 @@ async def test_pieces_become_one_message_even_if_the_answer_is_cut(tmp_path: Pat
 
 
 @in_virtual_time
-async def test_a_growing_answer_is_shown_about_once_a_second_and_is_then_one_message(tmp_path: Path) -> None:
+async def test_a_growing_answer_is_updated_about_once_a_second_and_becomes_one_message(tmp_path: Path) -> None:
     writer = rs.Module("writer", requires=(rawio,))
     words = [f"{n % 10} " for n in range(45)]
 
@@ -160,7 +160,7 @@ async def test_a_growing_answer_is_shown_about_once_a_second_and_is_then_one_mes
     assert len(post.sent) == 1
     times = [time for time, _ in post.shown]
     assert all(after - before > 0.9 for before, after in itertools.pairwise(times))
-    assert times[2] - times[1] > 1.9  # the messenger has asked to wait
+    assert times[2] - times[1] > 1.9  # because the messenger asked the agent to wait
     assert all(shown and "".join(words).startswith(shown) for _, shown in post.shown)
 
 
@@ -183,7 +183,7 @@ async def test_a_rule_may_send_a_picture_to_its_chat(tmp_path: Path) -> None:
 
 
 @in_virtual_time
-async def test_a_failed_delivery_is_tried_again_in_order(tmp_path: Path) -> None:
+async def test_failed_deliveries_are_repeated_in_order_with_growing_pauses(tmp_path: Path) -> None:
     post = Post()
     post.failures += [DeliveryError("the server has failed", unsure=True)] * 4
     async with room(tmp_path, post) as opened:
@@ -195,7 +195,7 @@ async def test_a_failed_delivery_is_tried_again_in_order(tmp_path: Path) -> None
 
 
 @in_virtual_time
-async def test_a_wait_that_the_messenger_asks_for_delays_only_one_chat(tmp_path: Path) -> None:
+async def test_if_the_messenger_asks_to_wait_only_that_chat_is_delayed(tmp_path: Path) -> None:
     post = Post()
     post.failures += [DeliveryError("too many messages", wait=30.0)]
     async with room(tmp_path, post) as opened:
@@ -208,7 +208,7 @@ async def test_a_wait_that_the_messenger_asks_for_delays_only_one_chat(tmp_path:
 
 
 @in_virtual_time
-async def test_a_refused_message_does_not_stop_the_next(tmp_path: Path) -> None:
+async def test_a_refused_message_does_not_stop_the_next_message(tmp_path: Path) -> None:
     post = Post()
     post.failures += [DeliveryError("the text is bad", final=True), RuntimeError("a mistake in the platform")]
     async with room(tmp_path, post) as opened:
@@ -217,7 +217,7 @@ async def test_a_refused_message_does_not_stop_the_next(tmp_path: Path) -> None:
 
 
 @in_virtual_time
-async def test_a_chat_that_is_closed_is_forgotten(tmp_path: Path) -> None:
+async def test_a_closed_chat_is_forgotten(tmp_path: Path) -> None:
     post = Post()
     post.failures += [DeliveryError("blocked", gone=True)]
     async with room(tmp_path, post) as opened:
@@ -257,7 +257,7 @@ async def test_the_agent_admits_that_it_could_not_fetch_a_file(tmp_path: Path) -
 
 
 @in_virtual_time
-async def test_in_a_group_each_person_is_a_user(tmp_path: Path) -> None:
+async def test_in_a_group_each_person_is_a_user_of_the_agent(tmp_path: Path) -> None:
     post = Post()
     ada, bob = Person("1", "Ada"), Person("2", "Bob")
     async with room(tmp_path, post) as opened:
@@ -269,11 +269,11 @@ async def test_in_a_group_each_person_is_a_user(tmp_path: Path) -> None:
         opened.receive([letter("stop", "g", kind="command", person=ada, group=True)])
         await past(1.0)
         assert dict(found.context.read(interloc.users)) == {"letters-2": "Bob"}
-    assert post.sent[1].to and post.sent[3].to  # in a group an answer is a reply
+    assert post.sent[1].to and post.sent[3].to  # in a group, an answer is a reply to a message
 
 
 def remembering(tmp_path: Path, *steps: list[str]) -> list[str]:
-    """Return the words of an agent with memory to several runs of messages, on an ordinary loop."""
+    """Run an agent with memory once for each list of messages; return all its answers. The loop is an ordinary one."""
     post = Post()
 
     async def talk() -> None:
@@ -309,7 +309,7 @@ async def who_is_it(ctx: rs.RuleContext) -> None:
 
 @knower.rule(when=interloc.users.added, writes=rawio.output, weight=9)
 async def keep_silent(ctx: rs.RuleContext) -> None:
-    """Greet nobody."""
+    """Replace the greeting of `parrot` by silence."""
 
 
 def test_memory_keeps_a_person_with_their_account_until_they_ask_to_be_forgotten(tmp_path: Path) -> None:

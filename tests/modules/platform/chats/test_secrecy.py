@@ -1,4 +1,4 @@
-"""Secrets are removed from the log, even if other libraries log them."""
+"""Secrets do not appear in the log, even if other libraries log them."""
 
 import logging
 
@@ -25,7 +25,7 @@ def test_a_secret_is_replaced_in_messages_arguments_and_tracebacks(caplog: pytes
     assert "nothing to hide 1 2" in caplog.text
 
 
-def test_after_the_body_the_log_is_as_before(caplog: pytest.LogCaptureFixture) -> None:
+def test_after_the_with_block_the_log_shows_the_text_again(caplog: pytest.LogCaptureFixture) -> None:
     before = logging.getLogRecordFactory()
     with secret(TOKEN):
         pass
@@ -34,7 +34,7 @@ def test_after_the_body_the_log_is_as_before(caplog: pytest.LogCaptureFixture) -
     assert TOKEN in caplog.text
 
 
-def test_a_platform_that_ends_does_not_show_the_secrets_of_another(caplog: pytest.LogCaptureFixture) -> None:
+def test_the_end_of_one_platform_does_not_reveal_the_secrets_of_another(caplog: pytest.LogCaptureFixture) -> None:
     before, log = logging.getLogRecordFactory(), logging.getLogger("some.library")
     first, second = secret(TOKEN, "password"), secret("another token", "password")
     first.__enter__()

@@ -1,4 +1,4 @@
-"""The sender: the pace of messages, voice notes that are refused, and a file that cannot be written."""
+"""The sender: the rate of messages, refused voice notes, and a file that cannot be written."""
 
 import asyncio
 from pathlib import Path
@@ -11,7 +11,7 @@ from ravestate.modules.platform.chats.store import Answer
 
 
 @in_virtual_time
-async def test_a_spare_turn_is_one_that_no_message_needs() -> None:
+async def test_spare_is_true_only_if_no_message_needs_the_turn() -> None:
     pace = Pace(20.0)
     await past(10.0)
     while pace.spare():  # use up the turns of the burst
@@ -24,7 +24,7 @@ async def test_a_spare_turn_is_one_that_no_message_needs() -> None:
 
 
 @in_virtual_time
-async def test_never_more_messages_are_sent_in_a_second_than_telegram_allows() -> None:
+async def test_within_any_second_at_most_30_messages_are_sent() -> None:
     pace, times = Pace(25.0), list[float]()
     for pause in (10.0, 3.0):
         await past(pause)
@@ -35,7 +35,7 @@ async def test_never_more_messages_are_sent_in_a_second_than_telegram_allows() -
 
 
 @in_virtual_time
-async def test_a_voice_note_that_is_refused_becomes_a_text(tmp_path: Path) -> None:
+async def test_a_voice_note_that_the_messenger_refuses_is_sent_as_text(tmp_path: Path) -> None:
     post = Post()
     post.failures += [DeliveryError("VOICE_MESSAGES_FORBIDDEN", final=True)]
     async with room(tmp_path, post) as opened:
@@ -48,7 +48,7 @@ async def test_a_voice_note_that_is_refused_becomes_a_text(tmp_path: Path) -> No
 
 
 class Stubborn(Post):
-    """A messenger during whose deliveries the file cannot be written."""
+    """A messenger. During its first two deliveries, the file becomes unwritable for 20 s."""
 
     def __init__(self) -> None:
         super().__init__()

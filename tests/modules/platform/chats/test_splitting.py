@@ -1,4 +1,4 @@
-"""Long texts become several messages, without a loss."""
+"""Long texts are split into several messages."""
 
 from hypothesis import given
 from hypothesis import strategies as st
@@ -7,13 +7,13 @@ from ravestate.modules.platform.chats.splitting import split
 
 
 @given(st.text(alphabet="ab .\n", max_size=400), st.integers(1, 60))
-def test_no_part_is_too_long_and_nothing_but_space_is_lost(text: str, longest: int) -> None:
+def test_no_part_is_too_long_and_only_white_space_is_lost(text: str, longest: int) -> None:
     parts = split(text, longest)
     assert all(0 < len(part) <= longest for part in parts)
     assert "".join("".join(parts).split()) == "".join(text.split())
 
 
-def test_paragraphs_stay_whole_before_sentences_and_words() -> None:
+def test_a_text_is_split_between_paragraphs_or_else_sentences_or_else_words() -> None:
     assert split("One two three.\n\nFour. Five six.", 20) == ["One two three.", "Four. Five six."]
     assert split("One two three. Four five.", 20) == ["One two three.", "Four five."]
     assert split("One two three four five six", 20) == ["One two three four", "five six"]

@@ -1,4 +1,4 @@
-"""The store: the messages that survive the death of a process, and the messages that it forgets."""
+"""The store: messages that survive the death of a process, and messages that it forgets."""
 
 import sqlite3
 import stat
@@ -23,7 +23,7 @@ def answer(text: str, entry: Entry | None = None, chat: str = "a") -> Answer:
     return Answer(Outgoing(key=text, chat=chat, text=text), None if entry is None else entry.n)
 
 
-def test_a_message_is_pending_until_it_is_done_and_its_key_is_known_afterwards(tmp_path: Path) -> None:
+def test_a_message_is_pending_until_it_is_done_and_is_then_not_taken_again(tmp_path: Path) -> None:
     store, message = opened(tmp_path), letter("one")
     entry = store.take(message)
     assert entry is not None
@@ -39,7 +39,7 @@ def test_a_message_is_pending_until_it_is_done_and_its_key_is_known_afterwards(t
     assert not again.knows("b", message.person)
 
 
-def test_a_killed_process_leaves_its_kept_messages_and_no_part_of_a_batch(tmp_path: Path) -> None:
+def test_a_killed_process_leaves_its_stored_messages_and_no_part_of_an_open_batch(tmp_path: Path) -> None:
     code = f"""
 import os, signal, sys
 sys.path.insert(0, {str(Path(__file__).parents[3])!r})
@@ -59,7 +59,7 @@ with store.batch():
     assert store.chats_to_send() == []
 
 
-def test_an_answer_is_queued_then_begun_then_sent(tmp_path: Path) -> None:
+def test_an_answer_is_queued_and_then_begun_and_then_sent(tmp_path: Path) -> None:
     store = opened(tmp_path)
     entry = store.take(letter("one"))
     assert entry is not None
@@ -76,14 +76,13 @@ def test_an_answer_is_queued_then_begun_then_sent(tmp_path: Path) -> None:
     assert not store.next("a").begun  # type: ignore[union-attr]
     store.sent(begun, "id 1")
     assert store.next("a").message.text == "second"  # type: ignore[union-attr]
-    assert [each.text for each in store.recorded(entry.n)] == [
-        "first"
-    ]  # kept for a comparison if the agent hears the message again
+    # The store keeps the answer, to compare it if the agent hears the message again.
+    assert [each.text for each in store.recorded(entry.n)] == ["first"]
     store.commit((), [entry])
     assert store.recorded(entry.n) == []
 
 
-def test_only_the_answer_to_the_newest_message_is_found_for_an_edit(tmp_path: Path) -> None:
+def test_an_edit_can_change_only_the_answer_to_the_newest_message(tmp_path: Path) -> None:
     store = opened(tmp_path)
     first = store.take(letter("one", id="m1"))
     assert first is not None
@@ -98,10 +97,10 @@ def test_only_the_answer_to_the_newest_message_is_found_for_an_edit(tmp_path: Pa
     assert store.answer_to(late) is None
     unanswered = store.take(letter("five", id="m2", kind="edit"))
     assert unanswered is not None
-    assert store.answer_to(unanswered) is None  # an edit of the first message came in between
+    assert store.answer_to(unanswered) is None  # an edit of the first message has come since
 
 
-def test_a_message_is_given_up_after_several_crashes_but_not_after_several_clean_ends(tmp_path: Path) -> None:
+def test_a_message_is_dropped_after_several_crashes_but_not_after_clean_ends(tmp_path: Path) -> None:
     store = opened(tmp_path)
     store.take(letter("deadly"))
     store.take(letter("innocent"))
@@ -125,7 +124,7 @@ def test_an_edit_replaces_a_message_that_is_not_heard_yet(tmp_path: Path) -> Non
     assert not store.knows("a", message.person)
 
 
-def test_a_message_that_is_forgotten_is_not_kept_again_when_it_is_heard(tmp_path: Path) -> None:
+def test_hearing_a_forgotten_message_does_not_store_it_again(tmp_path: Path) -> None:
     store = opened(tmp_path)
     entry = store.take(letter("one"))
     assert entry is not None
@@ -134,7 +133,7 @@ def test_a_message_that_is_forgotten_is_not_kept_again_when_it_is_heard(tmp_path
     assert store.pending() == []
 
 
-def test_the_keys_of_old_messages_are_deleted_while_the_agent_runs(
+def test_the_keys_of_old_messages_are_deleted_when_a_new_message_comes(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     store, now = opened(tmp_path), time.time()
@@ -148,7 +147,7 @@ def test_the_keys_of_old_messages_are_deleted_while_the_agent_runs(
 
 
 def test_a_failed_commit_leaves_no_transaction_open(tmp_path: Path) -> None:
-    """SQLite checks a deferred reference only at the commit, so only this step fails."""
+    """SQLite checks a deferred reference only at the commit, so only the commit fails."""
     store = opened(tmp_path)
     store._db.execute("PRAGMA foreign_keys=ON")
     store._db.execute("CREATE TABLE child (n REFERENCES inbox (n) DEFERRABLE INITIALLY DEFERRED)")
@@ -170,7 +169,7 @@ def test_a_forgotten_chat_leaves_no_text_in_the_file(tmp_path: Path) -> None:
     assert b"secret" not in whole
 
 
-def test_a_chat_that_moves_takes_its_messages_along(tmp_path: Path) -> None:
+def test_move_changes_the_chat_of_all_messages_of_a_chat(tmp_path: Path) -> None:
     store = opened(tmp_path)
     store.take(letter("one"))
     store.commit([answer("yes")])

@@ -1,4 +1,4 @@
-"""Voice notes, with the real recogniser and voice, and without them."""
+"""Voice notes with the real recogniser and voice, and without the packages for speech."""
 
 import asyncio
 import sys
@@ -9,7 +9,7 @@ from ravestate.errors import PlatformError
 from ravestate.modules.platform.chats.voice import VOICE, spoken, words_in
 
 
-def test_a_spoken_text_is_understood_again() -> None:
+def test_the_recogniser_understands_a_text_that_the_voice_has_spoken() -> None:
     async def there_and_back() -> str:
         note = await spoken("Hello, how are you today?")
         assert note is not None

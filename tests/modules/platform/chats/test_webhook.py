@@ -14,7 +14,7 @@ from ravestate.errors import PlatformError
 from ravestate.modules.platform.chats import webhook
 
 
-def test_only_requests_with_the_secret_and_of_a_sane_size_are_taken() -> None:
+def test_the_webhook_accepts_only_small_json_requests_with_the_secret() -> None:
     taken: list[Any] = []
     full: list[bool] = []
 
@@ -58,7 +58,7 @@ def test_only_requests_with_the_secret_and_of_a_sane_size_are_taken() -> None:
     assert taken == [{"update_id": 1}]
 
 
-def test_a_port_in_use_is_named() -> None:
+def test_the_message_for_a_port_in_use_names_the_port() -> None:
     async def never() -> None:
         raise AssertionError
 

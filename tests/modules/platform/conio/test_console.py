@@ -34,7 +34,7 @@ asyncio.run(main())
 
 
 class Script:
-    """A screen with a script of lines and exceptions; it keeps its output."""
+    """A screen that returns the lines and raises the exceptions of a script. It keeps its output in `log`."""
 
     interactive = True
 
@@ -87,7 +87,7 @@ def heard(screen: Script) -> tuple[list[str], Console]:
         (OSError(5, "Input/output error"), "closed"),
     ],
 )
-def test_lines_come_until_the_input_ends(last: BaseException, ending: str) -> None:
+def test_the_console_yields_lines_until_the_input_ends(last: BaseException, ending: str) -> None:
     screen = Script("hello", "", "a\x1b[2Jb\x00\udcff", last, "never")
     lines, console = heard(screen)
     assert lines == ["hello", "", "ab\ufffd"]
@@ -109,7 +109,7 @@ def test_output_is_clean_and_in_order() -> None:
     assert screen.log == ["show one\ntwo", "stream th", "stream ree", "end", "show four"]
 
 
-def test_streamed_pieces_may_become_the_whole_text() -> None:
+def test_after_streamed_pieces_only_the_rest_of_the_utterance_is_shown() -> None:
     screen = Script()
     console = Console(screen)
     for whole in ("Hello you!", "Hello", "Help!", "again"):
@@ -126,7 +126,7 @@ def test_streamed_pieces_may_become_the_whole_text() -> None:
     ]  # fmt: skip
 
 
-def test_other_output_during_a_stream_gets_a_line_of_its_own() -> None:
+def test_another_utterance_during_a_stream_gets_its_own_line() -> None:
     screen = Script()
     console = Console(screen)
     console.grow("Hello")
@@ -188,13 +188,13 @@ def test_the_message_without_prompt_toolkit_says_what_to_install(monkeypatch: py
         Console(stdin=Terminal(), stdout=Terminal())
 
 
-def test_the_history_file_is_in_the_folder_for_state(monkeypatch: pytest.MonkeyPatch) -> None:
+def test_the_history_file_is_in_the_state_folder(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr(sys, "platform", "linux")
     monkeypatch.setenv("XDG_STATE_HOME", "/state")
     assert history_file() == Path("/state/ravestate/history")
 
 
-# -------------------------------------------------------------------------- in a process of its own
+# -------------------------------------------------------------------------- in a separate process
 
 
 def test_a_program_reads_and_writes_through_pipes(tmp_path: Path) -> None:
@@ -211,7 +211,7 @@ def test_a_program_reads_and_writes_through_pipes(tmp_path: Path) -> None:
     assert not (tmp_path / "history").exists()
 
 
-def test_a_full_disk_is_a_failure_but_a_broken_pipe_is_not() -> None:
+def test_the_console_reports_a_full_disk_as_a_failure_but_not_a_broken_pipe() -> None:
     async def ended_by(error: OSError) -> PlatformError | None:
         script = Script("hello")
         script.broken = error
@@ -226,8 +226,8 @@ def test_a_full_disk_is_a_failure_but_a_broken_pipe_is_not() -> None:
     assert str(failure) == "conio: the agent's words cannot be written: No space left on device"
 
 
-@pytest.mark.skipif(os.name != "posix", reason="pipes of the shell")
-def test_a_reader_that_goes_away_ends_the_console_cleanly(tmp_path: Path) -> None:
+@pytest.mark.skipif(os.name != "posix", reason="needs POSIX pipes")
+def test_the_console_ends_cleanly_if_the_reader_of_its_output_goes_away(tmp_path: Path) -> None:
     run = subprocess.Popen(
         [sys.executable, "-c", ECHO, str(tmp_path / "history")],
         stdin=subprocess.PIPE,
@@ -263,10 +263,10 @@ def test_prepare_imports_the_terminal_library_only_for_a_terminal(
     assert ("ravestate.modules.platform.conio.terminal" in sys.modules) is is_terminal
     monkeypatch.setitem(sys.modules, "prompt_toolkit", None)
     monkeypatch.delitem(sys.modules, "ravestate.modules.platform.conio.terminal", raising=False)
-    prepare()  # without the package, the console raises the error
+    prepare()  # `prepare` ignores a missing package; the console raises the error
 
 
-@pytest.mark.skipif(os.name != "posix", reason="pseudo-terminals")
+@pytest.mark.skipif(os.name != "posix", reason="needs pseudo-terminals")
 @pytest.mark.parametrize(("keys", "ending"), [(b"\x04", "end of input"), (b"\x03", "interrupt"), (b"bye\r", "None")])
 def test_a_program_talks_on_a_terminal(tmp_path: Path, keys: bytes, ending: str) -> None:
     ours, theirs = os.openpty()
@@ -283,7 +283,7 @@ def test_a_program_talks_on_a_terminal(tmp_path: Path, keys: bytes, ending: str)
     seen = b""
 
     def wait_for(text: bytes) -> None:
-        """Play the terminal until it shows `text`."""
+        """Act as the terminal until the program has written `text`."""
         nonlocal seen
         while text not in seen:
             received = os.read(ours, 4096)
@@ -293,11 +293,11 @@ def test_a_program_talks_on_a_terminal(tmp_path: Path, keys: bytes, ending: str)
 
     assert run.stderr is not None
     with run:
-        wait_for(b"\x1b[?2004h")  # the prompt reads
-        os.write(ours, b"helo\x1b[Dl\r")  # the cursor goes back, and a letter is added
+        wait_for(b"\x1b[?2004h")  # now the prompt accepts keys
+        os.write(ours, b"helo\x1b[Dl\r")  # the left arrow moves the cursor back, and then a letter is inserted
         wait_for(b"'hello'")
         wait_for(b"mean?")
-        os.write(ours, b"\x1b[A\r")  # the up arrow brings the previous line
+        os.write(ours, b"\x1b[A\r")  # the up arrow recalls the previous line
         wait_for(b"'hello'")
         os.write(ours, b"caf\xe9" + b"y" * 2000 + b"\r")
         wait_for(b"'caf")
@@ -305,7 +305,7 @@ def test_a_program_talks_on_a_terminal(tmp_path: Path, keys: bytes, ending: str)
         os.write(ours, keys)
         if keys.startswith(b"bye"):
             wait_for(b"'bye'")
-        # On a Unix terminal, reading raises an error once the other side is closed.
+        # On Unix, reading from a pseudo-terminal raises an error when the other side is closed.
         try:
             while received := os.read(ours, 4096):
                 os.write(ours, b"\x1b[1;1R" * received.count(b"\x1b[6n"))

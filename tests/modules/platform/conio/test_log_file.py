@@ -1,4 +1,4 @@
-"""The log never appears between the lines of a chat."""
+"""The log of a chat goes to a file, so that it does not appear between the lines of the chat."""
 
 import logging
 import os
@@ -29,11 +29,11 @@ async def repeat(ctx):
 rs.run(parrot, conio)
 """
 
-terminals = pytest.mark.skipif(os.name != "posix", reason="pseudo-terminals")
+terminals = pytest.mark.skipif(os.name != "posix", reason="needs pseudo-terminals")
 
 
 def talk(folder: Path, *, redirected: bool) -> tuple[bytes, str]:
-    """Type two lines on a terminal; return what it shows, and what a redirected standard error gets."""
+    """Type two lines on a terminal. Return the text on the terminal, and the text on the redirected standard error."""
     ours, theirs = os.openpty()
     run = subprocess.Popen(
         [sys.executable, "-c", AGENT],
@@ -47,10 +47,10 @@ def talk(folder: Path, *, redirected: bool) -> tuple[bytes, str]:
     seen = b""
     errors = b""
     typed = b""
-    again = 6  # keys typed while the prompt is suspended may be lost, as on any terminal
+    again = 6  # type the keys at most this often: keys may be lost while the prompt is suspended
 
     def read() -> bool:
-        """Play the terminal; return whether the other side is still open."""
+        """Act as the terminal; return whether the other side is still open."""
         nonlocal seen, again
         while not select.select([ours], [], [], 5.0)[0]:
             again -= 1
@@ -58,7 +58,7 @@ def talk(folder: Path, *, redirected: bool) -> tuple[bytes, str]:
             os.write(ours, typed)
         try:
             received = os.read(ours, 4096)
-        except OSError:  # on a Unix terminal, reading raises an error once the other side is closed
+        except OSError:  # on Unix, the other side of the pseudo-terminal is closed
             return False
         seen += received
         os.write(ours, b"\x1b[1;1R" * received.count(b"\x1b[6n"))
@@ -80,7 +80,7 @@ def talk(folder: Path, *, redirected: bool) -> tuple[bytes, str]:
 
 
 @terminals
-def test_log_lines_do_not_stand_between_the_lines_of_a_chat(tmp_path: Path) -> None:
+def test_log_lines_go_to_a_file_and_not_to_the_terminal(tmp_path: Path) -> None:
     seen, _ = talk(tmp_path, redirected=False)
     (file,) = tmp_path.rglob("log")
     lines = file.read_text().splitlines()
@@ -94,7 +94,7 @@ def test_log_lines_do_not_stand_between_the_lines_of_a_chat(tmp_path: Path) -> N
 
 
 @terminals
-def test_a_redirected_log_stays_where_it_is(tmp_path: Path) -> None:
+def test_a_redirected_log_does_not_go_to_a_file(tmp_path: Path) -> None:
     seen, errors = talk(tmp_path, redirected=True)
     assert b"careful" not in seen
     assert errors.splitlines() == [
@@ -105,7 +105,7 @@ def test_a_redirected_log_stays_where_it_is(tmp_path: Path) -> None:
 
 
 class Terminal:
-    """A stream that is a terminal, and keeps its text."""
+    """A stand-in for a terminal, which keeps the text."""
 
     def __init__(self) -> None:
         self.text = ""
@@ -121,14 +121,14 @@ class Terminal:
 
 
 def on_terminal(monkeypatch: pytest.MonkeyPatch) -> Terminal:
-    """Put both standard streams on a terminal; pytest would undo this in a fixture."""
+    """Put both standard streams on a terminal. In a fixture, pytest would undo this before the test."""
     terminal = Terminal()
     monkeypatch.setattr(sys, "stdout", terminal)
     monkeypatch.setattr(sys, "stderr", terminal)
     return terminal
 
 
-def test_after_the_chat_the_log_goes_where_it_went_before(monkeypatch: pytest.MonkeyPatch, tmp_path: Path) -> None:
+def test_after_the_chat_the_log_goes_to_its_old_place_again(monkeypatch: pytest.MonkeyPatch, tmp_path: Path) -> None:
     terminal = on_terminal(monkeypatch)
     log, handler = logging.getLogger(), logging.StreamHandler(terminal)
     log.addHandler(handler)
@@ -143,7 +143,7 @@ def test_after_the_chat_the_log_goes_where_it_went_before(monkeypatch: pytest.Mo
     assert terminal.text == f"The log of this chat has 1 warning: {tmp_path / 'state' / 'log'}\noutside\n"
 
 
-def test_a_quiet_chat_ends_without_a_word_about_its_log(monkeypatch: pytest.MonkeyPatch, tmp_path: Path) -> None:
+def test_a_chat_without_warnings_does_not_mention_its_log(monkeypatch: pytest.MonkeyPatch, tmp_path: Path) -> None:
     terminal = on_terminal(monkeypatch)
     with log_to_file(tmp_path / "log"):
         pass
@@ -153,11 +153,11 @@ def test_a_quiet_chat_ends_without_a_word_about_its_log(monkeypatch: pytest.Monk
 def test_a_file_that_cannot_be_written_leaves_the_log_as_it_is(monkeypatch: pytest.MonkeyPatch, tmp_path: Path) -> None:
     on_terminal(monkeypatch)
     before = list(logging.getLogger().handlers)
-    with log_to_file(tmp_path):  # a folder
+    with log_to_file(tmp_path):  # this is a folder, so it cannot be written
         assert logging.getLogger().handlers == before
 
 
-def test_the_file_is_in_the_folder_for_state(monkeypatch: pytest.MonkeyPatch, tmp_path: Path) -> None:
+def test_the_log_file_is_in_the_state_folder(monkeypatch: pytest.MonkeyPatch, tmp_path: Path) -> None:
     monkeypatch.setattr(sys, "platform", "linux")
     monkeypatch.setenv("XDG_STATE_HOME", str(tmp_path))
     assert log_file() == tmp_path / "ravestate" / "log"

@@ -1,4 +1,4 @@
-"""Lines through pipes and files, with any bytes in them."""
+"""Reading and writing lines through pipes and files. The lines may contain any bytes."""
 
 import asyncio
 import io
@@ -89,7 +89,7 @@ def test_missing_or_closed_input_gives_no_lines(tmp_path: Path) -> None:
     assert read(file) == []
 
 
-def test_a_line_is_returned_as_soon_as_it_arrives(pipe: Callable[[], Pipe]) -> None:
+def test_read_returns_a_line_as_soon_as_it_arrives(pipe: Callable[[], Pipe]) -> None:
     reader, writer = pipe()
 
     async def main() -> None:
@@ -104,12 +104,12 @@ def test_a_line_is_returned_as_soon_as_it_arrives(pipe: Callable[[], Pipe]) -> N
             await asyncio.wait([waiting])
             print("!\nthree", file=writer)
             writer.close()
-            assert await all_lines(pipes) == ["two!", "three"]  # cancelling lost nothing
+            assert await all_lines(pipes) == ["two!", "three"]  # the cancelled read has lost nothing
 
     asyncio.run(main())
 
 
-def test_a_line_may_arrive_after_the_event_loop_has_ended(pipe: Callable[[], Pipe]) -> None:
+def test_the_input_may_end_after_the_event_loop_has_ended(pipe: Callable[[], Pipe]) -> None:
     reader, writer = pipe()
 
     async def main() -> None:
@@ -122,14 +122,14 @@ def test_a_line_may_arrive_after_the_event_loop_has_ended(pipe: Callable[[], Pip
     writer.close()
 
 
-def test_lines_are_written_at_once(pipe: Callable[[], Pipe]) -> None:
+def test_show_writes_lines_at_once(pipe: Callable[[], Pipe]) -> None:
     reader, writer = pipe()
     pipes = Pipes(None, writer)
     pipes.show("hello\nyou")
     assert [reader.readline(), reader.readline()] == ["hello\n", "you\n"]
 
 
-def test_a_streamed_line_is_written_when_it_is_whole() -> None:
+def test_a_streamed_line_is_written_when_it_is_complete() -> None:
     out = io.StringIO()
     pipes = Pipes(None, out)
     pipes.stream("Hel")
@@ -161,7 +161,7 @@ def test_characters_that_the_encoding_lacks_are_replaced() -> None:
     assert raw.getvalue() == b"caf? ?\n"
 
 
-def test_output_to_a_closed_pipe_raises(pipe: Callable[[], Pipe]) -> None:
+def test_output_to_a_closed_pipe_raises_broken_pipe_error(pipe: Callable[[], Pipe]) -> None:
     with pytest.raises(BrokenPipeError):
         Pipes(None, None).show("hello")
     reader, writer = pipe()
@@ -169,5 +169,5 @@ def test_output_to_a_closed_pipe_raises(pipe: Callable[[], Pipe]) -> None:
     pipes = Pipes(None, writer)
     with pytest.raises(BrokenPipeError):
         pipes.show("hello")
-    with pytest.raises(BrokenPipeError):  # closing does not write the rest either
+    with pytest.raises(BrokenPipeError):  # closing tries to write the rest, which fails as well
         writer.close()

@@ -44,7 +44,7 @@ async def fail(ctx: rs.RuleContext) -> None:
 
 
 class Keys:
-    """A screen on which a test types lines; it keeps its output."""
+    """A screen for which a test types lines. It keeps its output in `log`."""
 
     def __init__(self, *, interactive: bool = True) -> None:
         self.interactive = interactive
@@ -88,7 +88,7 @@ def keys(monkeypatch: pytest.MonkeyPatch) -> Keys:
     return keys
 
 
-def test_the_terminal_library_loads_off_the_loop(keys: Keys, monkeypatch: pytest.MonkeyPatch) -> None:
+def test_the_terminal_library_loads_in_another_thread(keys: Keys, monkeypatch: pytest.MonkeyPatch) -> None:
     threads: list[threading.Thread] = []
 
     def note(**_: Any) -> Console:
@@ -125,10 +125,12 @@ def test_models_load_without_a_console(monkeypatch: pytest.MonkeyPatch) -> None:
         assert may_load()
 
 
-def test_a_model_that_is_needed_before_the_prompt_loads_at_once(keys: Keys, monkeypatch: pytest.MonkeyPatch) -> None:
+def test_a_model_that_is_needed_can_be_loaded_while_the_console_opens(
+    keys: Keys, monkeypatch: pytest.MonkeyPatch
+) -> None:
     free: list[bool] = []
 
-    def make(**_: Any) -> Console:  # in a thread of its own
+    def make(**_: Any) -> Console:  # this runs in another thread
         free.append(loading.LOADING.acquire(timeout=10))
         loading.LOADING.release()
         return Console(keys)
@@ -139,11 +141,11 @@ def test_a_model_that_is_needed_before_the_prompt_loads_at_once(keys: Keys, monk
 
 
 def may_load() -> bool:
-    """Return whether no prompt is expected, so that models load."""
+    """Return whether models may load now, because no prompt is about to appear."""
     return loading.wait_for_prompt()
 
 
-def test_typing_counts_as_activity(keys: Keys, monkeypatch: pytest.MonkeyPatch) -> None:
+def test_a_user_who_types_does_not_make_the_agent_bored(keys: Keys, monkeypatch: pytest.MonkeyPatch) -> None:
     told: list[Any] = []
     monkeypatch.setattr(conio.rules, "Console", lambda on_key, **_: told.append(on_key) or Console(keys))
     lonely = rs.Module("lonely", requires=(rawio, idle))
@@ -162,7 +164,7 @@ def test_typing_counts_as_activity(keys: Keys, monkeypatch: pytest.MonkeyPatch) 
         assert sim.said == ["hello", "Are you there?"]
 
 
-def test_the_user_at_the_console_is_present_and_heard(keys: Keys) -> None:
+def test_the_agent_knows_and_hears_the_user_at_the_console(keys: Keys) -> None:
     with simulate(parrot, conio, settings={"conio": {"name": "Ada"}}) as sim:
         assert dict(sim.read(interloc.users)) == {"conio": "Ada"}
         assert isinstance(sim.read(conio.screen), Console)
@@ -173,7 +175,7 @@ def test_the_user_at_the_console_is_present_and_heard(keys: Keys) -> None:
     assert keys.log[-1] == "closed"
 
 
-def test_an_utterance_shows_while_it_grows(keys: Keys) -> None:
+def test_a_growing_utterance_is_shown_piece_by_piece(keys: Keys) -> None:
     with simulate(parrot, conio) as sim:
         keys.type("how are you")
         sim.settle()
@@ -203,21 +205,21 @@ def test_a_user_who_ends_the_input_gets_the_last_answer(keys: Keys) -> None:
         assert sim.said == ["one two", "Bye!"]
 
 
-def test_a_user_who_interrupts_gets_no_answer(keys: Keys) -> None:
+def test_a_user_who_presses_ctrl_c_gets_no_answer(keys: Keys) -> None:
     with simulate(parrot, conio) as sim:
         keys.type("one two", KeyboardInterrupt())
         sim.settle()
         assert sim.said == ["Bye!"]
 
 
-def test_pieces_that_never_become_an_utterance_end_their_line(keys: Keys) -> None:
+def test_the_line_of_pieces_ends_even_if_no_utterance_follows(keys: Keys) -> None:
     with simulate(stammer, conio) as sim:
         keys.type("hello")
         sim.settle()
         assert keys.log == ["I, I…", "end"]
 
 
-def test_an_agent_whose_console_cannot_be_opened_ends_and_says_why(monkeypatch: pytest.MonkeyPatch) -> None:
+def test_the_agent_ends_with_an_error_if_the_console_cannot_be_opened(monkeypatch: pytest.MonkeyPatch) -> None:
     def missing(**_: Any) -> Console:
         raise PlatformError("conio on a terminal needs prompt_toolkit")
 
@@ -226,7 +228,7 @@ def test_an_agent_whose_console_cannot_be_opened_ends_and_says_why(monkeypatch: 
         rs.run(conio)
 
 
-def test_lines_of_a_pipe_are_answered_one_by_one(keys: Keys) -> None:
+def test_each_line_of_a_pipe_is_answered_before_the_next_is_read(keys: Keys) -> None:
     keys.interactive = False
     with simulate(parrot, conio) as sim:
         keys.type("one two", "three four", EOFError())
@@ -249,7 +251,7 @@ def test_a_setting_turns_the_history_off(monkeypatch: pytest.MonkeyPatch, keys: 
     assert told == [("$ ", Path("file")), ("$ ", None)]
 
 
-def test_a_terminal_shows_once_how_to_end(keys: Keys, monkeypatch: pytest.MonkeyPatch) -> None:
+def test_a_terminal_first_shows_how_to_end_the_conversation(keys: Keys, monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr(conio.rules, "is_terminal", lambda *_: True)
     with simulate(parrot, conio) as sim:
         keys.type("one")
@@ -257,7 +259,7 @@ def test_a_terminal_shows_once_how_to_end(keys: Keys, monkeypatch: pytest.Monkey
         assert keys.log == ["Ctrl-D ends the conversation.", "one"]
 
 
-def test_plain_lines_on_a_terminal_need_no_package(monkeypatch: pytest.MonkeyPatch) -> None:
+def test_the_setting_plain_avoids_the_terminal_library(monkeypatch: pytest.MonkeyPatch) -> None:
     seen: list[Any] = []
 
     def missing(*, screen: Any, **_: Any) -> Console:

@@ -1,4 +1,4 @@
-"""The prompt: the user types below, and output appears above."""
+"""The prompt on a terminal: the user types at the bottom, and output appears above."""
 
 import asyncio
 import io
@@ -19,7 +19,7 @@ from ravestate.modules.platform.conio.terminal import Terminal, _full_row, _hist
 
 
 class Paper(DummyOutput):
-    """An output of 20 columns that keeps what is printed above the prompt."""
+    """A terminal of 20 columns. It keeps the text that is printed above the prompt."""
 
     def __init__(self) -> None:
         self.printed = ""
@@ -49,7 +49,7 @@ def play(scene: Play, history: Path | None = None) -> str:
 
 
 async def drawn(terminal: Terminal) -> None:
-    """Wait until the prompt is there."""
+    """Wait until the prompt is drawn again."""
     app, shown = terminal._session.app, asyncio.Event()
     app.after_render += lambda _: shown.set()
     await shown.wait()
@@ -59,7 +59,7 @@ def message(terminal: Terminal) -> str:
     return "".join(fragment[1] for fragment in terminal._message())
 
 
-def test_lines_are_typed_and_edited() -> None:
+def test_lines_can_be_typed_edited_recalled_and_pasted() -> None:
     async def scene(terminal: Terminal, keys: PipeInput, paper: Paper) -> None:
         keys.send_text("helo\x1b[Dl\r")
         assert await terminal.read() == "hello"
@@ -95,11 +95,11 @@ def test_each_key_calls_on_key_except_the_key_that_sends_the_line() -> None:
     asyncio.run(main())
 
 
-def test_a_line_that_is_full_takes_no_more_keys(monkeypatch: pytest.MonkeyPatch) -> None:
+def test_a_line_of_maximum_length_accepts_no_more_keys(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr(terminal_file, "LONGEST", 5)
 
     async def scene(terminal: Terminal, keys: PipeInput, paper: Paper) -> None:
-        keys.send_text("abcdefgh\x7fxyz\r")  # the delete key makes room for one
+        keys.send_text("abcdefgh\x7fxyz\r")  # the backspace key makes room for one letter
         assert await terminal.read() == "abcdx"
         keys.send_text("ab\x1b[200~cdefgh\x1b[201~ij\x1b[D\x7fk\r")
         assert await terminal.read() == "abcdefh"
@@ -141,7 +141,7 @@ def test_a_streamed_line_grows_above_the_prompt() -> None:
     assert play(scene) == "Hello\nyou\n"
 
 
-def test_a_full_row_is_printed_above_the_prompt() -> None:
+def test_full_rows_of_a_streamed_line_are_printed_above_the_prompt() -> None:
     async def scene(terminal: Terminal, keys: PipeInput, paper: Paper) -> None:
         terminal.stream("So long a line does not fit into the row, and nor does " + "x" * 45)
         assert message(terminal) == "xxxxxxx\n> "
@@ -154,7 +154,7 @@ def test_a_full_row_is_printed_above_the_prompt() -> None:
     ("rest", "printed"),
     [(["…"], ""), ([" time"], " time\n"), ([" a ti", "me", "…"], ""), ([" a", " time"], " a time\n")],
 )
-def test_streamed_text_stays_above_the_line_that_was_typed(rest: list[str], printed: str) -> None:
+def test_text_that_was_streamed_before_a_typed_line_is_not_printed_again(rest: list[str], printed: str) -> None:
     async def scene(terminal: Terminal, keys: PipeInput, paper: Paper) -> None:
         reading = asyncio.create_task(terminal.read())
         await drawn(terminal)
@@ -167,11 +167,11 @@ def test_streamed_text_stays_above_the_line_that_was_typed(rest: list[str], prin
             terminal.stream(piece)
         terminal.end()
 
-    assert play(scene) == printed  # nothing is printed twice
+    assert play(scene) == printed  # "Once upon a" is not printed again
 
 
 @pytest.mark.parametrize("redirected", [False, True])
-def test_other_prints_go_above_the_prompt_unless_they_are_redirected(
+def test_standard_output_and_error_go_above_the_prompt_unless_they_are_redirected(
     monkeypatch: pytest.MonkeyPatch, redirected: bool
 ) -> None:
     class Stream(io.StringIO):
@@ -188,7 +188,7 @@ def test_other_prints_go_above_the_prompt_unless_they_are_redirected(
     assert sys.stdout is before and sys.stderr is stderr
 
 
-def test_a_terminal_that_is_gone_ends_the_console() -> None:
+def test_reading_ends_if_the_terminal_has_gone() -> None:
     async def scene(terminal: Terminal, keys: PipeInput, paper: Paper) -> None:
         reading = asyncio.create_task(terminal.read())
         await drawn(terminal)
@@ -217,7 +217,7 @@ def test_reading_can_be_cancelled() -> None:
     play(scene)
 
 
-def test_typed_lines_are_kept(tmp_path: Path) -> None:
+def test_typed_lines_are_kept_in_the_history_file(tmp_path: Path) -> None:
     file = tmp_path / "state" / "history"
 
     async def type_it(terminal: Terminal, keys: PipeInput, paper: Paper) -> None:
@@ -253,11 +253,11 @@ def test_a_history_file_that_cannot_be_written_causes_no_error(tmp_path: Path) -
         ("日", 2, "日", ""),
     ],
 )
-def test_a_row_is_cut_at_a_space_or_at_the_edge(text: str, width: int, row: str, rest: str) -> None:
+def test_a_row_is_broken_at_a_space_or_else_at_the_edge(text: str, width: int, row: str, rest: str) -> None:
     assert _full_row(text, width) == (row, rest)
 
 
-def test_the_streamed_line_is_really_drawn() -> None:
+def test_a_streamed_line_appears_on_a_real_terminal() -> None:
     async def main() -> str:
         screen = io.StringIO()
         output = Vt100_Output(screen, lambda: Size(rows=40, columns=80), enable_cpr=False)
@@ -273,4 +273,4 @@ def test_the_streamed_line_is_really_drawn() -> None:
                 await reading
         return screen.getvalue()
 
-    assert "Hello…" in asyncio.run(main())  # a slow machine may draw it twice
+    assert "Hello…" in asyncio.run(main())  # a typed line in between ends the unfinished text with "…"

@@ -1,4 +1,4 @@
-"""The fixtures of Matrix's tests: a real homeserver (Synapse) in an environment and a process of its own."""
+"""Fixtures of the Matrix tests: a real homeserver (Synapse), in a separate environment and a separate process."""
 
 import asyncio
 import base64
@@ -35,7 +35,7 @@ class Homeserver:
         self._folder = folder
         self._python = ROOT / ".venvs" / "synapse" / "bin" / "python"
         if not self._python.exists():
-            pytest.fail("the tests of matrixio need Synapse: make test sets it up")
+            pytest.fail("the tests of matrixio need Synapse: run make test, which sets it up")
         self._process: subprocess.Popen[bytes] | None = None
         self._configure()
 
@@ -70,7 +70,7 @@ class Homeserver:
         }
         (self._folder / "log.yaml").write_text(yaml.safe_dump(logging))
         (self._folder / "homeserver.yaml").write_text(yaml.safe_dump(config))
-        # Synapse itself would take seconds to make this file.
+        # If this file were missing, Synapse would take seconds to make it.
         seed = base64.b64encode(os.urandom(32)).decode().rstrip("=")
         (self._folder / "signing.key").write_text(f"ed25519 a_test {seed}\n")
         self._command = [self._python, "-m", "synapse.app.homeserver", "-c", str(self._folder / "homeserver.yaml")]
@@ -78,7 +78,8 @@ class Homeserver:
     def start(self) -> None:
         ready = self._folder / "ready"
         ready.unlink(missing_ok=True)
-        with socket.socket(socket.AF_UNIX, socket.SOCK_DGRAM) as notice:  # as systemd waits for a service
+        # Synapse reports to this socket that it is ready, as it would to systemd.
+        with socket.socket(socket.AF_UNIX, socket.SOCK_DGRAM) as notice:
             notice.bind(str(ready))
             notice.settimeout(PATIENCE)
             environment = {**os.environ, "NOTIFY_SOCKET": str(ready)}
@@ -107,7 +108,7 @@ class Account:
         self._number = itertools.count()
         self._since: str | None = None
         self.heard: list[dict[str, Any]] = []
-        """The events of others in all rooms, in the order in which the server reports them."""
+        """The events of other people in all rooms, in the order in which the server reports them."""
 
     async def call(self, method: str, path: str, body: Any = None, **query: Any) -> Any:
         headers = {"Authorization": f"Bearer {self.token}"}
@@ -117,7 +118,7 @@ class Account:
         return answer.raise_for_status().json()
 
     async def room(self, *others: str, **options: Any) -> str:
-        """Open a room with others. With one other person, it is a direct chat."""
+        """Open a room with other people. A room with one other person is a direct chat."""
         body = {"invite": others, "is_direct": len(others) == 1, "preset": "trusted_private_chat", **options}
         return (await self.call("POST", "client/v3/createRoom", body))["room_id"]
 
@@ -139,7 +140,7 @@ class Account:
         return answer.raise_for_status().headers["Content-Type"]
 
     async def listen(self, count: int) -> list[str]:
-        """Return the messages of other people as "room: text", once there are `count`."""
+        """Wait until there are `count` messages of other people; return them as "room: text"."""
         async with asyncio.timeout(60):
             while len(self.said) < count:
                 query = {"timeout": 30_000, **({"since": self._since} if self._since else {})}
@@ -153,7 +154,7 @@ class Account:
 
     @property
     def said(self) -> list[str]:
-        """The messages heard so far; an edit replaces the message that it concerns."""
+        """The messages so far. An edited message has its new text."""
         found: dict[str, str] = {}
         for event in self.heard:
             content = event["content"]
@@ -180,7 +181,7 @@ async def register(server: Homeserver, http: httpx.AsyncClient, name: str, passw
 
 @asynccontextmanager
 async def accounts(server: Homeserver, *names: str) -> AsyncGenerator[list[Account]]:
-    """Yield accounts with these names."""
+    """Create accounts with these names."""
     async with httpx.AsyncClient(timeout=60.0, trust_env=False) as http:
         yield [await register(server, http, name) for name in names]
 

@@ -1,4 +1,4 @@
-"""A proxy before a homeserver, which makes requests fail as a test wants."""
+"""A proxy for a homeserver. It makes requests fail as a test demands."""
 
 import asyncio
 from dataclasses import dataclass, field
@@ -9,21 +9,26 @@ from aiohttp import web
 
 @dataclass
 class Fault:
-    """A fault of the next `times` requests whose method and path contain a text.
+    """A fault of the next `times` requests whose method and path contain the text `request`.
 
-    The kinds: an HTTP status; ``lost``: the server acts, but its answer never arrives; ``garbage``: the answer is cut;
-    ``hang``: neither an answer nor an end; ``refuse``: the connection ends at once, and the server hears nothing.
+    `kind` is one of these:
+
+    - an HTTP status, with which the proxy answers
+    - ``lost``: the server acts, but its answer never arrives
+    - ``garbage``: the second half of the answer is missing
+    - ``hang``: the server acts, but the proxy neither answers nor closes the connection
+    - ``refuse``: the proxy closes the connection, and the server gets no request
     """
 
     request: str
     kind: str
     times: int = 1
     met: asyncio.Event = field(default_factory=asyncio.Event)
-    """Set once all these requests have failed."""
+    """Set when all these requests have failed."""
 
 
 class Proxy:
-    """``async with Proxy(url) as proxy``; then `url` is the address of the proxy."""
+    """A proxy for the server with an address: ``async with Proxy(address) as proxy``. Its own address is `proxy.url`."""
 
     def __init__(self, server: str) -> None:
         self._server = server

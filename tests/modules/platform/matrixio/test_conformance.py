@@ -1,4 +1,4 @@
-"""Matrix passes the checks of platforms, with the agent in a process of its own, on a real homeserver."""
+"""Matrix passes the checks for platforms, with the agent in a separate process, on a real homeserver."""
 
 import asyncio
 from collections.abc import Awaitable, Callable
@@ -13,7 +13,7 @@ from ravestate.testing import CHECKS, Driver
 
 
 class Users:
-    """The users of a homeserver, each in a room with the agent, which runs in a process of its own."""
+    """An agent in a separate process, and users of a homeserver, each in their own room with the agent."""
 
     def __init__(self, server: Homeserver, folder: Path) -> None:
         self._server = server
@@ -49,5 +49,7 @@ class Users:
 
 
 @pytest.mark.parametrize("check", CHECKS)
-def test_matrix_conforms(check: Callable[[Driver], Awaitable[None]], homeserver: Homeserver, tmp_path: Path) -> None:
+def test_matrix_passes_the_checks_for_platforms(
+    check: Callable[[Driver], Awaitable[None]], homeserver: Homeserver, tmp_path: Path
+) -> None:
     asyncio.run(check(Users(homeserver, tmp_path)))

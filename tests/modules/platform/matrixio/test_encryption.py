@@ -1,4 +1,4 @@
-"""Encrypted rooms, against a real homeserver: the user has a client of their own with keys of its own."""
+"""Encrypted rooms on a real homeserver. The user's client has its own keys."""
 
 import io
 from pathlib import Path
@@ -75,7 +75,9 @@ class Client:
         return decrypt_attachment(answer.body, event.key["k"], event.hashes["sha256"], event.iv)
 
 
-def test_an_encrypted_room_is_a_conversation_like_any_other(homeserver: Homeserver, tmp_path: Path) -> None:
+def test_texts_and_pictures_pass_in_an_encrypted_room_even_after_a_restart(
+    homeserver: Homeserver, tmp_path: Path
+) -> None:
     @live("Robin", "Ada")
     async def test(folder: Path, robin: Account, account: Account) -> None:
         async with Client(account, folder / "ada") as ada:
@@ -90,7 +92,7 @@ def test_an_encrypted_room_is_a_conversation_like_any_other(homeserver: Homeserv
                 pictures = [each for each in await ada.listen(4) if isinstance(each, nio.RoomEncryptedImage)]
                 assert [await ada.picture(each) for each in pictures] == [PICTURE]
             await ada.send(room, {"msgtype": "m.text", "body": "Are you there?"})
-            async with running(robin, folder):  # the keys have stayed
+            async with running(robin, folder):  # the agent has kept its keys
                 heard = await ada.listen(5)
         assert heard[-1].body == "Are you there?"
         assert all(each.decrypted for each in heard)

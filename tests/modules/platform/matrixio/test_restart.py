@@ -1,4 +1,4 @@
-"""The agent or the homeserver dies in the middle of 20 conversations: no message is lost, and none is answered twice."""
+"""The agent and the homeserver are killed during 20 conversations. Each message still gets exactly one answer."""
 
 import asyncio
 import random
@@ -10,14 +10,16 @@ from ravestate.testing.platforms import PATIENCE
 
 
 def robin(account: Account, folder: Path) -> AgentProcess:
-    """Return the agent ``echo`` in a process of its own."""
+    """Return the agent ``echo`` in a separate process."""
     return AgentProcess(
         "matrixio", "ravestate.testing.platforms:echo",
         homeserver=account.server.url, user=account.id, password="password", path=folder / "chats.sqlite",
     )  # fmt: skip
 
 
-def test_twenty_rooms_outlive_kills_of_the_agent_and_of_the_server(homeserver: Homeserver, tmp_path: Path) -> None:
+def test_no_message_is_lost_or_answered_twice_when_agent_and_server_are_killed(
+    homeserver: Homeserver, tmp_path: Path
+) -> None:
     chance = random.Random(7)
 
     async def test() -> None:

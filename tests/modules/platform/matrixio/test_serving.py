@@ -1,4 +1,4 @@
-"""An agent on Matrix, against a real homeserver (Synapse) in a process of its own."""
+"""An agent on Matrix, with a real homeserver (Synapse) in a separate process."""
 
 import asyncio
 import contextlib
@@ -34,7 +34,7 @@ async def running(robin: Account, folder: Path, *modules: Any, **settings: Any) 
 
 
 def live(*names: str) -> Any:
-    """Run an async test with a folder, and with accounts of these names, on an ordinary loop."""
+    """Run an async test on an ordinary loop. It gets a folder, and an account for each of these names."""
 
     def decorate(test: Any) -> Any:
         def run(homeserver: Homeserver, tmp_path: Path) -> None:
@@ -50,7 +50,7 @@ def live(*names: str) -> Any:
 
 
 @live("Robin", "Ada")
-async def test_an_invited_agent_also_answers_messages_from_before_it_joined(
+async def test_an_invited_agent_also_answers_messages_that_are_older_than_its_joining(
     tmp_path: Path, robin: Account, ada: Account
 ) -> None:
     room = await ada.room(robin.id)
@@ -75,7 +75,7 @@ def _short_waits(monkeypatch: pytest.MonkeyPatch) -> None:
 
 @pytest.mark.usefixtures("_short_pages")
 @live("Robin", "Ada")
-async def test_more_messages_than_fit_into_an_answer_are_all_heard(
+async def test_all_messages_are_heard_even_if_they_do_not_fit_into_one_sync_response(
     tmp_path: Path, robin: Account, ada: Account
 ) -> None:
     room = await ada.room(robin.id)
@@ -90,7 +90,9 @@ async def test_more_messages_than_fit_into_an_answer_are_all_heard(
 
 @pytest.mark.usefixtures("_short_pages", "_short_waits")
 @pytest.mark.parametrize("kind", ["429", "502", "lost"])
-def test_older_messages_are_asked_for_again_after_a_failure(homeserver: Homeserver, tmp_path: Path, kind: str) -> None:
+def test_the_agent_requests_older_messages_again_after_a_failure(
+    homeserver: Homeserver, tmp_path: Path, kind: str
+) -> None:
     @live("Robin", "Ada")
     async def test(folder: Path, robin: Account, ada: Account) -> None:
         room = await ada.room(robin.id)
@@ -110,7 +112,9 @@ def test_older_messages_are_asked_for_again_after_a_failure(homeserver: Homeserv
 
 @pytest.mark.usefixtures("_short_waits")
 @pytest.mark.parametrize("kind", ["429", "refuse"])
-def test_a_room_that_cannot_be_joined_yet_delays_no_other(homeserver: Homeserver, tmp_path: Path, kind: str) -> None:
+def test_a_room_that_the_agent_cannot_join_yet_does_not_delay_other_rooms(
+    homeserver: Homeserver, tmp_path: Path, kind: str
+) -> None:
     @live("Robin", "Ada")
     async def test(folder: Path, robin: Account, ada: Account) -> None:
         async with Proxy(homeserver.url) as proxy, running(robin, folder, homeserver=proxy.url):
@@ -122,7 +126,7 @@ def test_a_room_that_cannot_be_joined_yet_delays_no_other(homeserver: Homeserver
             await ada.say(second, "two")
             await ada.say(first, "three")
             assert await ada.listen(2) == [f"{first}: one", f"{first}: three"]
-            failed.times = JOINS + 3  # the agent tries again after any number of such failures
+            failed.times = JOINS + 3  # the agent never stops trying
             await failed.met.wait()
             assert (await ada.listen(3))[2:] == [f"{second}: two"]
 
@@ -130,7 +134,7 @@ def test_a_room_that_cannot_be_joined_yet_delays_no_other(homeserver: Homeserver
 
 
 @live("Robin", "Ada")
-async def test_pictures_reactions_and_edits_pass_both_ways(tmp_path: Path, robin: Account, ada: Account) -> None:
+async def test_the_agent_handles_edits_reactions_and_pictures(tmp_path: Path, robin: Account, ada: Account) -> None:
     room = await ada.room(robin.id)
     async with running(robin, tmp_path):
         message = await ada.say(room, "I like tee")
@@ -151,7 +155,7 @@ async def test_pictures_reactions_and_edits_pass_both_ways(tmp_path: Path, robin
 
 
 @live("Robin", "Ada", "Bob")
-async def test_a_group_is_answered_when_it_speaks_to_the_agent(
+async def test_in_a_group_the_agent_answers_only_messages_that_address_it(
     tmp_path: Path, robin: Account, ada: Account, bob: Account
 ) -> None:
     room = await ada.room(robin.id, bob.id)
@@ -169,7 +173,9 @@ async def test_a_group_is_answered_when_it_speaks_to_the_agent(
 
 
 @live("Robin", "Ada", "Bob")
-async def test_only_allowed_people_get_an_answer(tmp_path: Path, robin: Account, ada: Account, bob: Account) -> None:
+async def test_the_agent_answers_only_people_in_the_setting_allow(
+    tmp_path: Path, robin: Account, ada: Account, bob: Account
+) -> None:
     async with running(robin, tmp_path, allow=(ada.id,)):
         theirs, ours = await bob.room(robin.id), await ada.room(robin.id)
         await bob.say(theirs, "Hello")
@@ -180,7 +186,7 @@ async def test_only_allowed_people_get_an_answer(tmp_path: Path, robin: Account,
 
 
 @live("Robin", "Ada")
-async def test_a_room_that_the_agent_had_to_leave_stops_nothing_else(
+async def test_the_agent_continues_in_other_rooms_after_it_is_kicked_from_one(
     tmp_path: Path, robin: Account, ada: Account
 ) -> None:
     async with running(robin, tmp_path):
@@ -193,19 +199,21 @@ async def test_a_room_that_the_agent_had_to_leave_stops_nothing_else(
 
 
 @live("Robin")
-async def test_a_wrong_password_is_explained(tmp_path: Path, robin: Account) -> None:
+async def test_a_wrong_password_or_token_ends_the_agent_with_advice(tmp_path: Path, robin: Account) -> None:
     for wrong in ({"password": "something else"}, {"password": None, "token": "syt_wrong_token"}):
         async with running(robin, tmp_path, **wrong) as task:
             with pytest.raises(PlatformError, match=r"refuses the account: check matrixio\.user"):
                 await task
 
 
-def test_a_missing_account_is_explained() -> None:
+def test_a_missing_password_ends_the_agent_with_advice() -> None:
     with pytest.raises(PlatformError, match="export RAVESTATE_MATRIXIO_PASSWORD"):
         asyncio.run(matrixio.serve(Agent(parrot, matrixio)))
 
 
-def test_the_password_is_never_logged(homeserver: Homeserver, tmp_path: Path, caplog: pytest.LogCaptureFixture) -> None:
+def test_the_access_token_is_never_logged(
+    homeserver: Homeserver, tmp_path: Path, caplog: pytest.LogCaptureFixture
+) -> None:
     caplog.set_level(logging.DEBUG)
 
     @live("Robin", "Ada")
@@ -230,7 +238,7 @@ FAULTS = [
 
 
 @pytest.mark.parametrize("faults", FAULTS)
-def test_nothing_is_lost_or_doubled_after_failed_requests(
+def test_after_failed_requests_no_message_is_lost_or_answered_twice(
     homeserver: Homeserver, tmp_path: Path, monkeypatch: pytest.MonkeyPatch, faults: list[tuple[str, str]]
 ) -> None:
     for place in ("chats.attempts.FIRST_WAIT", "chats.attempts.LONGEST_WAIT"):
@@ -261,7 +269,7 @@ def test_nothing_is_lost_or_doubled_after_failed_requests(
 
 
 @pytest.mark.usefixtures("_short_waits")
-def test_events_that_cannot_be_kept_come_again(
+def test_events_that_cannot_be_stored_are_requested_again(
     homeserver: Homeserver, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     failures = fill_disk(monkeypatch)
@@ -277,7 +285,7 @@ def test_events_that_cannot_be_kept_come_again(
     assert not failures
 
 
-# Synapse itself refuses events that are even more malformed.
+# Synapse refuses events that are worse than these.
 MALFORMED: list[tuple[str, dict[str, Any]]] = [
     ("m.room.message", {"msgtype": "m.text", "body": "x", "m.relates_to": 7}),
     ("m.room.message", {"msgtype": "m.text", "body": "x", "m.relates_to": {"rel_type": "m.replace"}}),
@@ -289,7 +297,7 @@ MALFORMED: list[tuple[str, dict[str, Any]]] = [
 
 
 @live("Robin", "Ada")
-async def test_malformed_events_are_left_out(tmp_path: Path, robin: Account, ada: Account) -> None:
+async def test_malformed_events_are_ignored(tmp_path: Path, robin: Account, ada: Account) -> None:
     room = await ada.room(robin.id)
     async with running(robin, tmp_path):
         for kind, content in MALFORMED:
@@ -299,7 +307,7 @@ async def test_malformed_events_are_left_out(tmp_path: Path, robin: Account, ada
 
 
 @live("Robin", "Ada")
-async def test_a_picture_is_sent_with_its_own_type(tmp_path: Path, robin: Account, ada: Account) -> None:
+async def test_a_picture_is_sent_with_its_content_type(tmp_path: Path, robin: Account, ada: Account) -> None:
     painter = rs.Module("painter", requires=(rawio,))
 
     @painter.rule(when=rawio.input.changed, reads=matrixio.chat)
@@ -315,7 +323,7 @@ async def test_a_picture_is_sent_with_its_own_type(tmp_path: Path, robin: Accoun
     assert [await ada.kind(url) for url in urls] == ["image/jpeg", "image/png"]
 
 
-def test_an_invitation_outlives_a_failure_and_a_restart(
+def test_the_agent_joins_a_room_after_a_failure_and_a_restart(
     homeserver: Homeserver, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     monkeypatch.setattr("ravestate.modules.platform.chats.attempts.FIRST_WAIT", 1000.0)
@@ -336,7 +344,7 @@ def test_an_invitation_outlives_a_failure_and_a_restart(
 
 
 @live("Robin", "Ada")
-async def test_a_picture_of_20_MB_is_seen(tmp_path: Path, robin: Account, ada: Account) -> None:
+async def test_a_picture_of_20_MB_reaches_the_agent(tmp_path: Path, robin: Account, ada: Account) -> None:
     room = await ada.room(robin.id)
     size = 20 * 1024 * 1024
     async with running(robin, tmp_path):

@@ -1,4 +1,4 @@
-"""The connection to a robot: what it sends, and when."""
+"""The connection to a robot: turning the base, speaking, and wrong fields."""
 
 import asyncio
 from typing import Any
@@ -15,7 +15,7 @@ from runtime.on_loop import turns
 
 
 class Base:
-    """A base that obeys the commands to its topic, with a clock of its own."""
+    """A stand-in for a base: it obeys the commands on its topic, and has its own clock."""
 
     def __init__(self) -> None:
         self.now = self.angle = self.speed = 0.0
@@ -30,7 +30,7 @@ class Base:
         self.speed = message["angular"]["z"]
 
     async def sleep(self, seconds: float) -> None:
-        """Let time pass; other waiting tasks run first."""
+        """Let time pass on the clock of the base. Other waiting tasks run first."""
         end = self.now + seconds
         await turns(1)
         self.angle += self.speed * max(0.0, end - self.now)
@@ -62,7 +62,7 @@ def test_a_base_turns_to_the_newest_direction_even_while_it_turns() -> None:
             await robot.look(roboyio.Pose(yaw=-1.0))
             await first
             assert (base.angle, base.speed) == (pytest.approx(-1.0, abs=0.05), 0.0)
-            assert base.longest <= STEP + 1e-9  # a real base stops when commands stay away
+            assert base.longest <= STEP + 1e-9  # a real base stops if the next command comes too late
             await robot.look(roboyio.Pose(yaw=0.5))
             assert (base.angle, base.speed) == (pytest.approx(0.5, abs=0.05), 0.0)
             await robot.node.close()
@@ -80,14 +80,14 @@ def test_a_turn_that_is_cancelled_stops_the_base() -> None:
             turn.cancel()
             await asyncio.wait((turn,))
             assert base.speed == 0.0
-            await robot.look(roboyio.Pose())  # it knows where it stopped
+            await robot.look(roboyio.Pose())  # the robot knows the angle at which it stopped
             assert base.angle == pytest.approx(0.0, abs=0.05)
             await robot.node.close()
 
     asyncio.run(main())
 
 
-def test_words_wait_until_the_robot_is_connected() -> None:
+def test_say_waits_until_the_robot_is_connected() -> None:
     async def main() -> None:
         async with Bus(0) as bus, opened(ros2.make_node(ros2.Settings(backend="bus", bus=bus.address))) as node:
             heard: list[str] = []
@@ -113,7 +113,7 @@ def test_words_wait_until_the_robot_is_connected() -> None:
     asyncio.run(main())
 
 
-def test_a_field_that_the_type_does_not_have_is_named() -> None:
+def test_the_message_names_a_field_that_the_message_type_does_not_have() -> None:
     async def main() -> None:
         async with Bus(0) as bus, opened(ros2.make_node(ros2.Settings(backend="bus", bus=bus.address))) as node:
             wrong = Port(topic="/speech/say", type="std_msgs/String", field="dat")

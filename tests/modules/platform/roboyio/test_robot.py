@@ -1,4 +1,4 @@
-"""A robot's data file."""
+"""The data files of robots."""
 
 from pathlib import Path
 
@@ -9,13 +9,13 @@ from ravestate.modules.platform.roboyio.robot import Direction, load_robot
 
 
 @pytest.mark.parametrize("name", ["roboy", "turtlebot"])
-def test_the_shipped_robots_are_complete(name: str) -> None:
+def test_the_data_files_of_the_built_in_robots_are_complete(name: str) -> None:
     robot = load_robot(name)
     assert robot.hear and robot.speak and robot.express and robot.head["yaw"].low < 0 < robot.head["yaw"].high
     assert set(robot.express.faces) == {"neutral", "happy", "shy", "surprised", "affectionate", "sad", "thinking"}
 
 
-def test_roboy_has_its_own_names() -> None:
+def test_the_data_file_of_roboy_has_the_names_of_its_topics_and_services() -> None:
     robot = load_robot("roboy")
     assert robot.hear and robot.hear.topic == "/roboy/cognition/speech/recognition"
     assert robot.speak and robot.speak.service == "/roboy/cognition/speech/synthesis/talk"
@@ -23,7 +23,7 @@ def test_roboy_has_its_own_names() -> None:
     assert robot.head["yaw"].topic == "/sphere_head_axis0/sphere_head_axis0/target"
 
 
-def test_degrees_and_full_turns_are_understood() -> None:
+def test_directions_in_degrees_become_radians_between_minus_pi_and_pi() -> None:
     port = Direction(topic="/d", type="std_msgs/Int32", field="data", unit="degrees")
 
     class Message:
@@ -33,7 +33,7 @@ def test_degrees_and_full_turns_are_understood() -> None:
     assert port.pack(3) == {"data": 3}
 
 
-def test_a_wrong_file_is_named(tmp_path: Path) -> None:
+def test_wrong_robot_names_and_files_are_refused_with_a_message(tmp_path: Path) -> None:
     with pytest.raises(DeclarationError, match="did you mean 'roboy'"):
         load_robot("robby")
     file = tmp_path / "robot.yaml"

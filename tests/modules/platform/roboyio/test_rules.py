@@ -1,4 +1,4 @@
-"""An agent with a robot: the stand-in's topics and services on the built-in bus, and rules in virtual time."""
+"""An agent with a stand-in for a robot, on the built-in bus and on ROS 1, and rules in virtual time."""
 
 import asyncio
 from typing import Any
@@ -33,7 +33,7 @@ async def quickly(seconds: float) -> None:
 
 
 @pytest.mark.parametrize("name", ["roboy", "turtlebot"])
-def test_the_agent_hears_through_the_robot_and_moves_its_voice_face_head_and_hand(name: str) -> None:
+def test_the_agent_hears_through_the_robot_and_controls_its_voice_face_head_and_hand(name: str) -> None:
     seen: list[dict[str, Any]] = []
 
     async def main() -> None:
@@ -68,7 +68,7 @@ def test_the_agent_hears_through_the_robot_and_moves_its_voice_face_head_and_han
 
 
 def test_roboy_hears_and_answers_over_real_ros_1(ros1_network: Network) -> None:
-    """The whole way over a roscore: text in on a topic; the answer, the expression and the head's movement out."""
+    """Over a roscore: text comes in on a topic, and the answer, the expression and the movement of the head go out."""
 
     async def main() -> None:
         seen: list[dict[str, Any]] = []
@@ -80,7 +80,7 @@ def test_roboy_hears_and_answers_over_real_ros_1(ros1_network: Network) -> None:
                 await until(
                     lambda: any("hello" in looks["text"] for looks in seen), lambda: robot.hear("hello", 0.4), 0.5
                 )
-                # The direction is a topic of its own, which may connect later.
+                # The direction has a separate topic, which may connect later.
                 await until(
                     lambda: any(looks["yaw"] == pytest.approx(0.4, abs=0.01) for looks in seen),
                     lambda: robot.hear("hello", 0.4),
@@ -89,7 +89,7 @@ def test_roboy_hears_and_answers_over_real_ros_1(ros1_network: Network) -> None:
                 ours = context.read(ros1.node)
                 assert ours is not None
                 bound = [channel.name for channel in ours.channels.values()]
-                assert len(bound) == len(set(bound))  # it connected once, and answers once
+                assert len(bound) == len(set(bound))  # no topic or service was bound twice
                 context.emit(emotion.surprised)
                 await until(lambda: any(looks["face"] == "surprised" for looks in seen))
             await robot.close()
@@ -97,7 +97,7 @@ def test_roboy_hears_and_answers_over_real_ros_1(ros1_network: Network) -> None:
     ros1_network.run(main)
 
 
-def test_the_robot_looks_at_the_speaker_away_while_it_thinks_and_around_in_silence() -> None:
+def test_the_robot_looks_at_the_speaker_and_then_shows_thinking_and_later_looks_around() -> None:
     slow = rs.Module("slow", requires=[rawio])
 
     @slow.rule(when=rawio.input.changed, writes=rawio.output)
@@ -120,7 +120,7 @@ def test_the_robot_looks_at_the_speaker_away_while_it_thinks_and_around_in_silen
         for _ in range(40):
             sim.advance(1.0)
             poses.add(sim.read(roboyio.gaze))
-        assert len(poses) > 2  # it looks around
+        assert len(poses) > 2  # the robot looks around
 
 
 def test_emoji_are_not_spoken() -> None:

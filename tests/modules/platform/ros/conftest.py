@@ -1,4 +1,4 @@
-"""Fixtures: a real network of ROS 1 and one of ROS 2, with another node on each."""
+"""Fixtures: a real network of ROS 1 and a real network of ROS 2, each with another node."""
 
 from collections.abc import Iterator
 

@@ -26,10 +26,10 @@ from ravestate.runtime.clock import Clock
 
 HERE = Path(__file__).parent
 PATIENCE = 20.0
-"""Seconds after which a test gives up waiting."""
+"""A test fails if it waits longer than this (seconds)."""
 ROS2_PYTHON = Path(sys.prefix).parent / ".venvs" / "ros2" / "bin" / "python"
 OWN = HERE / "definitions"
-"""A folder with a message package that is installed nowhere."""
+"""A folder with the definitions of a message package that is not installed."""
 
 
 T = TypeVar("T")
@@ -37,7 +37,7 @@ T = TypeVar("T")
 
 @functools.cache
 def the_loop() -> asyncio.Runner:
-    """Return the loop of all shared nodes."""
+    """Return the event loop that all shared nodes use."""
     runner = asyncio.Runner()
     atexit.register(runner.close)
     return runner
@@ -50,9 +50,9 @@ def free_port() -> int:
 
 
 class Network(abc.ABC):
-    """A network with one other node. Its processes are stopped by their numbers.
+    """A network with one other node, the peer, in a separate process.
 
-    Its nodes live on one loop, so that tests share a node instead of starting a bridge each.
+    All nodes of the tests use one loop. So tests can share a node, and do not each start a bridge.
     """
 
     version: int
@@ -64,7 +64,7 @@ class Network(abc.ABC):
         self._nodes: dict[str, Node] = {}
 
     def run(self, main: Callable[[], Coroutine[Any, Any, T]]) -> T:
-        """Run a test on the loop of the nodes."""
+        """Run a test on the loop of the shared nodes."""
 
         async def in_time() -> T:
             async with asyncio.timeout(PATIENCE):
@@ -74,7 +74,7 @@ class Network(abc.ABC):
 
     @abc.abstractmethod
     def start_peer(self) -> None:
-        """Start the other node."""
+        """Start the peer."""
 
     def _run_peer(self, python: str, file: str, *arguments: str) -> None:
         self.peer = subprocess.Popen(
@@ -83,21 +83,21 @@ class Network(abc.ABC):
         )  # fmt: skip
         assert self.peer.stdout is not None
         line = self.peer.stdout.readline()
-        assert line == "ready\n", f"the other node of ROS {self.version} did not start: is `make ros` done?"
+        assert line == "ready\n", f"the other node of ROS {self.version} did not start: run `make ros` first"
 
     @property
     @abc.abstractmethod
     def environment(self) -> dict[str, str]:
-        """The variables by which a process finds the network."""
+        """The environment variables with which a process finds the network."""
 
     def node(self, **options: Any) -> Node:
-        """Return a node of ours, as an agent makes it; use it on a loop, and close it."""
+        """Return a new node, as an agent makes it. Use it on a loop, and close it."""
         settings = self.module.Settings(**self.settings[f"ros{self.version}"], definitions=(OWN,), **options)
         return self.module.make_node(settings)
 
     @contextlib.asynccontextmanager
     async def lent(self, **options: Any) -> AsyncIterator[Node]:
-        """Lend the node that all tests share. The channels that a test opens are closed after it."""
+        """Yield the node that all tests share, and close its channels at the end of the ``with`` block."""
         key = repr(options)
         if key not in self._nodes:
             self._nodes[key] = self.node(**options)
@@ -142,7 +142,7 @@ class Ros1(Network):
             with contextlib.suppress(OSError), socket.create_connection(("127.0.0.1", self.port), 1.0):
                 return
             threading.Event().wait(0.02)
-        raise AssertionError("rosmaster did not start: is `make ros` done?")
+        raise AssertionError("rosmaster did not start: run `make ros` first")
 
     def start_peer(self) -> None:
         types = Types(1, Definitions((OWN,)))
@@ -171,7 +171,7 @@ class Ros2(Network):
 
 
 def end(process: subprocess.Popen[Any] | None) -> None:
-    """Stop a process, and close its pipes."""
+    """Kill a process, and close its pipes."""
     if process is None:
         return
     process.send_signal(signal.SIGKILL)
@@ -202,12 +202,12 @@ async def opened(node: Node) -> AsyncIterator[Node]:
 
 
 async def pause(seconds: float) -> None:
-    """Give the other processes some real time."""
+    """Wait for some real time, in which the other processes continue."""
     await Clock(asyncio.get_running_loop()).sleep(seconds)
 
 
 async def until(reached: Callable[[], object], again: Callable[[], None] = lambda: None, every: float = 0.02) -> None:
-    """Wait until a condition holds in other processes. Repeat an action meanwhile, because discovery takes time."""
+    """Wait until a condition is true. Meanwhile, repeat the action `again`, because nodes take time to connect."""
     async with asyncio.timeout(PATIENCE):
         while not reached():
             again()

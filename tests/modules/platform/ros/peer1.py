@@ -1,4 +1,4 @@
-"""A real node of ROS 1 at the other end. The tests run it with the Python that has rospy."""
+"""The peer of the ROS 1 tests: a real node. The tests run it with the Python that has rospy."""
 
 import sys
 import threading
@@ -12,7 +12,7 @@ from std_msgs.msg import Float32, Int32, String
 
 
 class Raw(genpy.Message):
-    """A message of any type, as bytes."""
+    """A message of any type, serialised."""
 
     __slots__ = ("data",)
     _slot_types = ("uint8[]",)

@@ -1,4 +1,4 @@
-"""A real node of ROS 2 at the other end. The tests run it with the Python that has rclpy."""
+"""The peer of the ROS 2 tests: a real node. The tests run it with the Python that has rclpy."""
 
 import sys
 import threading
@@ -53,7 +53,7 @@ def main():
         return response
 
     async def silent(request, response):
-        await Future()  # waits for ever, without occupying a thread
+        await Future()  # never answers, and occupies no thread
         return response
 
     def count(goal):

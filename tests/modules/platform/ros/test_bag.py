@@ -1,4 +1,4 @@
-"""Recorded bags in virtual time."""
+"""Playing recorded bags in virtual time."""
 
 from pathlib import Path
 from typing import Any
@@ -18,7 +18,7 @@ TALK = [(0.0, "hello"), (2.5, "how are you"), (60.0, "bye")]
 
 
 def record(path: Path, version: int) -> Path:
-    """Record a talk on /chat, and numbers on another topic."""
+    """Write a bag with texts on /chat, and numbers on another topic."""
     types = Types(version)  # type: ignore[arg-type]
     writer: Any = Writer1(path) if version == 1 else Writer2(path, version=9)
     with writer:
@@ -45,7 +45,7 @@ def listener(ros: Any) -> tuple[rs.Module, rs.Slot[Any]]:
 
 
 @pytest.mark.parametrize("version", [1, 2])
-def test_a_bag_played_twice_gives_the_same_decisions(tmp_path: Path, version: int) -> None:
+def test_playing_a_bag_twice_gives_the_same_trace(tmp_path: Path, version: int) -> None:
     bag = record(tmp_path / ("talk.bag" if version == 1 else "talk"), version)
     runs: list[list[str]] = []
     for _ in range(2):
@@ -58,7 +58,7 @@ def test_a_bag_played_twice_gives_the_same_decisions(tmp_path: Path, version: in
     assert runs[0] == runs[1]
 
 
-def test_a_bag_that_fits_no_slot_is_refused_with_a_reason(tmp_path: Path) -> None:
+def test_a_bag_without_a_topic_of_the_agent_is_refused_with_a_reason(tmp_path: Path) -> None:
     bag = record(tmp_path / "talk", 2)
     agent = rs.Module("agent", requires=[ros2])
     ros2.subscriber(agent, "camera", topic="/camera", type="sensor_msgs/Image")

@@ -1,4 +1,4 @@
-"""The built-in bus."""
+"""Nodes on the built-in bus."""
 
 import asyncio
 import socket
@@ -19,7 +19,7 @@ def on(bus: Bus) -> Node:
     return ros2.make_node(ros2.Settings(backend="bus", bus=bus.address))
 
 
-def test_topics_and_services_work_as_on_ros() -> None:
+def test_topics_services_and_the_graph_work_on_the_bus() -> None:
     async def main() -> None:
         async with Bus(0) as bus, opened(on(bus)) as robot, opened(on(bus)) as agent:
             heard: list[str] = []
@@ -50,7 +50,7 @@ def test_topics_and_services_work_as_on_ros() -> None:
     asyncio.run(main())
 
 
-def test_large_messages_pass_and_a_latched_one_waits_for_latecomers() -> None:
+def test_a_late_subscriber_gets_a_large_latched_message() -> None:
     async def main() -> None:
         async with Bus(0) as bus, opened(on(bus)) as one, opened(on(bus)) as other:
             image = one.advertise("/image", "sensor_msgs/Image", latch=True, qos=LATCHED)
@@ -74,7 +74,7 @@ def test_a_node_waits_for_its_bus_and_reconnects_after_a_restart() -> None:
             node.subscribe("/chat", "std_msgs/String", lambda message: heard.append(message.data), qos=ALL)
             for n in range(2):
                 async with Bus(port) as bus, opened(on(bus)) as other:
-                    await until(lambda: bus.find("subscriber", "/chat"))  # of this round
+                    await until(lambda: bus.find("subscriber", "/chat"))  # on the new bus
                     other.advertise("/chat", "std_msgs/String", qos=ALL).publish(f"round {n}")
                     await until(lambda: f"round {n}" in heard)  # noqa: B023
             assert heard == ["round 0", "round 1"]
@@ -106,7 +106,7 @@ def test_wrong_types_and_addresses_are_refused_with_a_reason(caplog: pytest.LogC
     asyncio.run(limited())
 
 
-def test_a_channel_with_a_rate_limit_skips_messages_but_not_the_latest() -> None:
+def test_a_channel_with_a_rate_limit_skips_messages_but_never_the_latest() -> None:
     async def main() -> None:
         async with Bus(0) as bus, opened(on(bus)) as one, opened(on(bus)) as other:
             newest: list[int] = []
@@ -121,12 +121,12 @@ def test_a_channel_with_a_rate_limit_skips_messages_but_not_the_latest() -> None
                 number.publish(n)
             await until(lambda: newest and newest[-1] == 199)
             assert every == list(range(200))
-            assert len(newest) == 2  # the first, and after the pause the last
+            assert len(newest) == 2  # the first message, and the last one after the pause
 
     asyncio.run(main())
 
 
-def test_a_server_that_goes_away_fails_its_calls_at_once() -> None:
+def test_the_calls_of_a_server_that_goes_away_fail_at_once() -> None:
     async def main() -> None:
         async with Bus(0) as bus, opened(on(bus)) as robot, opened(on(bus)) as agent:
             asked = asyncio.Event()
@@ -147,6 +147,6 @@ def test_a_server_that_goes_away_fails_its_calls_at_once() -> None:
             await robot.close()
             with pytest.raises(PlatformError, match="the node of the service is gone"):
                 await call
-            await until(lambda: not bus._calls)  # the call that timed out is gone, too
+            await until(lambda: not bus._calls)  # the bus has also forgotten the call that timed out
 
     asyncio.run(main())

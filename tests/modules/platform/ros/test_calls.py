@@ -1,4 +1,4 @@
-"""The open calls of a node."""
+"""`Calls`: the calls and goals of a node that wait for an answer."""
 
 import asyncio
 import json
@@ -15,7 +15,7 @@ from ravestate.modules.platform.ros.types import Types
 
 
 class Spoken:
-    """Types whose messages are their own text, after the name of their type."""
+    """A stand-in for message types. A decoded message is the name of its type and its text."""
 
     def decode(self, body: memoryview, type: str) -> str:
         if not body:
@@ -38,7 +38,7 @@ def body(value: str) -> memoryview:
     return memoryview(value.encode())
 
 
-def test_an_answer_ends_its_own_call_once() -> None:
+def test_the_first_answer_to_a_call_ends_only_this_call() -> None:
     async def main(calls: Calls) -> None:
         first, second = calls.open(channel("lamp", "client")), calls.open(channel("lamp", "client"))
         calls.answer(Kind.ANSWER, second.number, body("on"))
@@ -49,7 +49,7 @@ def test_an_answer_ends_its_own_call_once() -> None:
     run(main)
 
 
-def test_feedback_leaves_a_goal_open() -> None:
+def test_feedback_does_not_end_a_goal() -> None:
     async def main(calls: Calls) -> None:
         heard: list[str] = []
         goal = calls.open(channel("walk", "action"), heard.append)
@@ -86,7 +86,7 @@ def test_a_faulty_channel_fails_only_its_own_calls() -> None:
     run(main)
 
 
-def test_a_fault_and_a_broken_answer_are_errors() -> None:
+def test_a_fault_and_an_answer_that_cannot_be_decoded_raise_errors() -> None:
     async def main(calls: Calls) -> None:
         refused, broken = calls.open(channel("lamp", "client")), calls.open(channel("lamp", "client"))
         calls.answer(Kind.FAULT, refused.number, body(json.dumps("no lamp")))

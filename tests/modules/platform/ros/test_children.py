@@ -1,4 +1,4 @@
-"""Parts of the bridge processes that a real network cannot time."""
+"""Code of the bridge processes that needs an exact timing, which a real network does not allow."""
 
 # pyright: basic
 import importlib
@@ -15,7 +15,7 @@ import ravestate.modules.platform.ros
 CHILDREN = Path(ravestate.modules.platform.ros.__file__).with_name("children")
 
 
-def test_a_call_of_ros2_that_is_cancelled_while_its_server_is_sought_is_not_sent(
+def test_a_ros2_call_that_is_cancelled_while_it_waits_for_its_server_is_not_sent(
     monkeypatch: pytest.MonkeyPatch,
 ) -> None:
     raw: Any = types.ModuleType("rclpy.serialization")
@@ -37,7 +37,7 @@ def test_a_call_of_ros2_that_is_cancelled_while_its_server_is_sought_is_not_sent
 
         def wait_for_service(self, timeout_sec: float) -> bool:
             if self.cancels:
-                node.cancel(1, 7)  # it comes now
+                node.cancel(1, 7)  # the cancellation comes during the wait
             return True
 
         def call_async(self, request: bytes) -> Future:
@@ -45,7 +45,7 @@ def test_a_call_of_ros2_that_is_cancelled_while_its_server_is_sought_is_not_sent
             return Future()
 
     class Node(program.Ros2Node):
-        def __init__(self) -> None:  # without a real node
+        def __init__(self) -> None:  # no real node is made
             self._bindings = {1: {"kind": "client", "type": "Lamp", "timeout": 5.0, "name": "/lamp"}}
             self._channels = {1: Client()}
             self._calls, self._goals = {}, {}

@@ -1,4 +1,4 @@
-"""The agent's own connections with nodes of ROS 1."""
+"""Connections that the agent itself has with publishers and subscribers of ROS 1."""
 
 import asyncio
 import socket
@@ -20,7 +20,10 @@ def wire(*bodies: bytes) -> bytes:
 
 
 def receive(main: Callable[[socket.socket, Taken, list[str]], Awaitable[None]], *, first: bytes = b"") -> None:
-    """Run a test with a publisher's socket, the messages taken so far, and a list of other events."""
+    """Run a test of a connection from a publisher.
+
+    It gets the publisher's socket, a list of the messages that have arrived, and a list of other events.
+    """
 
     async def run() -> None:
         ours, theirs = socket.socketpair()
@@ -43,7 +46,10 @@ def receive(main: Callable[[socket.socket, Taken, list[str]], Awaitable[None]], 
 
 
 def send(main: Callable[[ToSubscriber, socket.socket, list[bool]], Awaitable[None]]) -> None:
-    """Run a test with a connection, the subscriber's socket, and whether the connection was lost."""
+    """Run a test of a connection to a subscriber.
+
+    It gets the connection, the subscriber's socket, and a list that is not empty once the connection is lost.
+    """
 
     async def run() -> None:
         ours, theirs = socket.socketpair()
@@ -59,7 +65,7 @@ def send(main: Callable[[ToSubscriber, socket.socket, list[bool]], Awaitable[Non
 
 
 @pytest.mark.parametrize("piece", [1, 3, 7, 1 << 20])
-def test_messages_arrive_whole_in_pieces_of_any_size(piece: int) -> None:
+def test_messages_are_joined_from_pieces_of_any_size(piece: int) -> None:
     bodies = [b"one", b"", b"x" * 100, b"last"]
     data = wire(*bodies)
 
@@ -69,7 +75,7 @@ def test_messages_arrive_whole_in_pieces_of_any_size(piece: int) -> None:
         connection = FromPublisher(ours, lambda body, _: taken.append(bytes(body)), lambda: None, print, data[:2])
         for start in range(2, len(data), piece):
             theirs.send(data[start : start + piece])
-            connection.read()  # as the loop does
+            connection.read()  # called as the event loop would call it
         assert taken == bodies
         connection.close()
         theirs.close()
@@ -77,8 +83,8 @@ def test_messages_arrive_whole_in_pieces_of_any_size(piece: int) -> None:
     asyncio.run(main())
 
 
-def test_the_newest_of_all_messages_that_have_come_is_marked() -> None:
-    bodies = [bytes([n]) * 8000 for n in range(20)]  # each is longer than a block
+def test_only_the_last_of_several_messages_that_have_arrived_is_marked_as_the_newest() -> None:
+    bodies = [bytes([n]) * 8000 for n in range(20)]  # each is longer than one read
 
     async def main(theirs: socket.socket, taken: Taken, events: list[str]) -> None:
         assert theirs.send(wire(*bodies) + wire(b"half")[:6]) > 20 * 8000
@@ -88,7 +94,7 @@ def test_the_newest_of_all_messages_that_have_come_is_marked() -> None:
     receive(main)
 
 
-def test_a_message_longer_than_a_turn_arrives() -> None:
+def test_a_message_that_needs_several_turns_of_the_loop_arrives() -> None:
     async def main(theirs: socket.socket, taken: Taken, events: list[str]) -> None:
         await asyncio.get_running_loop().sock_sendall(theirs, wire(b"x" * (TURN + 300_000), b"next"))
         await until(lambda: len(taken) == 2)
@@ -97,7 +103,7 @@ def test_a_message_longer_than_a_turn_arrives() -> None:
     receive(main)
 
 
-def test_the_reads_of_a_long_message_stay_short() -> None:
+def test_the_time_of_a_read_does_not_grow_with_the_message() -> None:
     async def main() -> None:
         ours, theirs = socket.socketpair()
         taken: list[int] = []
@@ -111,16 +117,15 @@ def test_the_reads_of_a_long_message_stay_short() -> None:
             connection.read()
             times.append(time.thread_time() - start)
         assert taken == [size]
-        assert statistics.median(times[-100:]) < 20 * statistics.median(
-            times[:100]
-        )  # if each read copied the whole message, it would take 200 times as long
+        # If each read copied the message so far, the last reads would take 200 times as long as the first.
+        assert statistics.median(times[-100:]) < 20 * statistics.median(times[:100])
         connection.close()
         theirs.close()
 
     asyncio.run(main())
 
 
-def test_a_length_that_no_message_has_ends_the_connection() -> None:
+def test_an_impossible_length_of_a_message_ends_the_connection() -> None:
     async def main(theirs: socket.socket, taken: Taken, events: list[str]) -> None:
         theirs.send(wire(b"good") + struct.pack("<I", LONGEST + 1) + b"x")
         await until(lambda: len(events) == 2)
@@ -130,7 +135,7 @@ def test_a_length_that_no_message_has_ends_the_connection() -> None:
     receive(main)
 
 
-def test_the_end_of_a_publisher_is_noticed_once() -> None:
+def test_the_loss_of_a_publisher_is_reported_once() -> None:
     async def main(theirs: socket.socket, taken: Taken, events: list[str]) -> None:
         theirs.send(wire(b"last words"))
         theirs.close()
@@ -140,12 +145,12 @@ def test_the_end_of_a_publisher_is_noticed_once() -> None:
     receive(main)
 
 
-def test_while_a_subscriber_does_not_read_the_newest_messages_wait() -> None:
+def test_for_a_subscriber_that_does_not_read_only_the_newest_messages_are_kept() -> None:
     async def main(connection: ToSubscriber, theirs: socket.socket, lost: list[bool]) -> None:
         bodies = [bytes([n]) * 1_000_000 for n in range(10)]
         for body in bodies:
             connection.send(body)
-        wanted = wire(bodies[0], *bodies[-3:])  # the first was on its way
+        wanted = wire(bodies[0], *bodies[-3:])  # the first message was already being sent
         data = b""
         while len(data) < len(wanted):
             data += await asyncio.get_running_loop().sock_recv(theirs, 1 << 20)
@@ -157,7 +162,7 @@ def test_while_a_subscriber_does_not_read_the_newest_messages_wait() -> None:
     send(main)
 
 
-def test_bytes_from_a_subscriber_are_dropped_until_it_ends() -> None:
+def test_data_from_a_subscriber_is_ignored() -> None:
     async def main(connection: ToSubscriber, theirs: socket.socket, lost: list[bool]) -> None:
         await asyncio.get_running_loop().sock_sendall(theirs, struct.pack("<I", 0xFFFFFFF0) + bytes(1 << 20))
         connection.send(b"one")

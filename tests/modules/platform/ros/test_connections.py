@@ -1,4 +1,4 @@
-"""The channels of topics of ROS 1 whose publishers the agent reads itself."""
+"""Channels of ROS 1 topics, for which the agent itself has connections with other nodes."""
 
 import asyncio
 import json
@@ -24,7 +24,7 @@ def wire(*bodies: bytes) -> bytes:
 
 
 class Reader:
-    """A stand-in for a node: it keeps the messages that its channels take."""
+    """A stand-in for a node. It keeps the messages of its channels."""
 
     def __init__(self) -> None:
         self.taken: dict[int, list[bytes]] = {}
@@ -33,7 +33,7 @@ class Reader:
     def channel(self, number: int, **options: Any) -> Channel:
         self.taken[number] = []
         binding = {"name": "/topic", "type": "Text", "md5": "m", "latest": "pause" in options}
-        return Channel(self, number, binding, "Text", **options)  # type: ignore[arg-type]  # it is used like a node
+        return Channel(self, number, binding, "Text", **options)  # type: ignore[arg-type]  # it has the methods that a channel uses
 
     def take(self, channel: Channel, body: memoryview) -> None:
         self.taken[channel.number].append(bytes(body))
@@ -45,7 +45,7 @@ class Reader:
 
 
 def run(main: Callable[[Reader, Connections, socket.socket], Awaitable[None]]) -> None:
-    """Run a test with a latching publisher's socket."""
+    """Run a test with a `Reader`, its connections, and the socket of a publisher that latches its messages."""
 
     async def run() -> None:
         ours, theirs = socket.socketpair()
@@ -59,7 +59,7 @@ def run(main: Callable[[Reader, Connections, socket.socket], Awaitable[None]]) -
     asyncio.run(run())
 
 
-def test_the_fault_of_one_channel_loses_no_message_of_another() -> None:
+def test_an_exception_in_one_channel_does_not_lose_a_message_of_another() -> None:
     async def main(reader: Reader, connections: Connections, theirs: socket.socket) -> None:
         def fault(body: Any) -> None:
             raise ValueError("a rule's fault")
@@ -76,7 +76,7 @@ def test_the_fault_of_one_channel_loses_no_message_of_another() -> None:
     run(main)
 
 
-def test_a_new_channel_gets_the_newest_latched_message_and_no_older_one() -> None:
+def test_a_new_channel_gets_only_the_newest_latched_message() -> None:
     async def main(reader: Reader, connections: Connections, theirs: socket.socket) -> None:
         connections.add(reader.channel(1))
         theirs.send(wire(b"old"))
@@ -88,7 +88,7 @@ def test_a_new_channel_gets_the_newest_latched_message_and_no_older_one() -> Non
             loop.remove_reader(ours)
             connections.add(reader.channel(2))
 
-        loop.add_reader(ours, add)  # it runs in the turn in which the newer message is read
+        loop.add_reader(ours, add)  # this runs in the same turn of the loop in which the new message is read
         signal.send(b"now")
         theirs.send(wire(b"new"))
         await until(lambda: reader.taken.get(2))
@@ -101,7 +101,7 @@ def test_a_new_channel_gets_the_newest_latched_message_and_no_older_one() -> Non
     run(main)
 
 
-def test_the_rate_of_a_channel_limits_direct_and_bridged_messages_together() -> None:
+def test_the_rate_limit_of_a_channel_counts_direct_and_bridged_messages_together() -> None:
     async def main(reader: Reader, connections: Connections, theirs: socket.socket) -> None:
         channel = reader.channel(1, pause=1e6)
         bridge = partial(channel.offer, owed=True)
@@ -110,7 +110,7 @@ def test_the_rate_of_a_channel_limits_direct_and_bridged_messages_together() -> 
         def end_of_pause() -> None:
             timer = channel.timer
             assert timer is not None
-            timer._run()  # type: ignore[attr-defined]  # now
+            timer._run()  # type: ignore[attr-defined]  # without waiting for its time
             timer.cancel()
 
         connections.add(channel)
@@ -136,7 +136,7 @@ def test_the_rate_of_a_channel_limits_direct_and_bridged_messages_together() -> 
 
 
 class Link:
-    """A stand-in for a bridge: it hands over sockets, and keeps the node's frames."""
+    """A stand-in for the link to a bridge. It hands over sockets, and keeps the frames that the node sends."""
 
     def __init__(self, handle: Handle, ready: Callable[[], None]) -> None:
         self.failed: PlatformError | None = None
@@ -163,7 +163,7 @@ class Link:
         return self.sockets.pop()
 
     def subscriber(self, number: int) -> bytes:
-        """Hand over a connection with a new subscriber; return what it gets at once."""
+        """Hand over a connection with a new subscriber. Return the data that the subscriber gets at once."""
         ours, theirs = socket.socketpair()
         self.sockets.append(ours)
         what = {"topic": "/topic", "depth": 5}
@@ -176,17 +176,17 @@ class Link:
                 return b""
 
 
-def test_a_late_subscriber_gets_the_last_message_that_two_channels_have_latched() -> None:
+def test_a_late_subscriber_gets_only_the_last_message_of_two_latching_channels() -> None:
     async def main() -> None:
         node = Node("ros1", Types(1, Definitions([])), lambda _, handle, ready, __: Link(handle, ready))
         qos = quality(None, depth=5, latch=True)
         one, two = (node.advertise("/topic", "std_msgs/Int8", latch=True, qos=qos) for _ in range(2))
-        link: Any = node._link  # pyright: ignore[reportPrivateUsage]  # the bridge's end
+        link: Any = node._link  # pyright: ignore[reportPrivateUsage]  # the stand-in for the link
         two.publish(1)
         one.publish(2)
         last = wire(b"\2")
         assert [link.subscriber(1), link.subscriber(2)] == [last, last]
-        one.close()  # the topic is still there
+        one.close()  # the other channel still has the topic
         assert link.subscriber(3) == last
         link.sent.clear()
         link.ready()

@@ -1,4 +1,4 @@
-"""The agent's end of the pipe to a bridge."""
+"""`Frames`: the agent's end of the connection with a bridge process."""
 
 import asyncio
 import socket
@@ -7,7 +7,7 @@ from modules.platform.ros.networks import PATIENCE, until
 from ravestate.modules.platform.ros.frames import HEAD, PASSED, Frames, Kind
 
 
-def test_the_fault_of_one_frame_loses_none_that_follow() -> None:
+def test_an_exception_at_one_frame_does_not_lose_the_next_frames() -> None:
     async def main() -> None:
         got: list[int] = []
         complaints: list[str] = []
@@ -33,7 +33,7 @@ def test_the_fault_of_one_frame_loses_none_that_follow() -> None:
     asyncio.run(main())
 
 
-def test_bytes_that_are_no_frames_end_the_link() -> None:
+def test_data_that_is_not_a_frame_ends_the_connection() -> None:
     async def main() -> None:
         lost: list[bool] = []
         ours, theirs = socket.socketpair()
@@ -47,7 +47,7 @@ def test_bytes_that_are_no_frames_end_the_link() -> None:
     asyncio.run(main())
 
 
-def test_a_socket_that_is_handed_over_is_not_inherited() -> None:
+def test_a_socket_from_the_bridge_is_not_inherited_by_child_processes() -> None:
     async def main() -> None:
         got: list[bool] = []
         ours, theirs = socket.socketpair()

@@ -1,4 +1,4 @@
-"""Actions of ROS 1, against a real server of actionlib."""
+"""Actions of ROS 1, with a real action server of actionlib."""
 
 import asyncio
 from typing import Any
@@ -9,7 +9,7 @@ from modules.platform.ros.networks import Network, until
 from ravestate.errors import PlatformError
 
 
-def test_a_goal_gives_feedback_and_a_result_and_is_cancelled(ros1_network: Network) -> None:
+def test_an_action_gives_feedback_and_a_result_and_can_be_cancelled(ros1_network: Network) -> None:
     async def main() -> None:
         async with ros1_network.lent() as node:
             action = node.action("/steps", "actionlib/Test", timeout=10.0)
@@ -48,8 +48,8 @@ def test_an_action_without_a_server_fails(ros1_network: Network) -> None:
     ros1_network.run(main)
 
 
-def test_a_goal_that_its_server_no_longer_knows_is_lost(ros1_network: Network) -> None:
-    """The test plays the server. After a restart, a server lists no goals."""
+def test_a_goal_fails_if_its_restarted_server_no_longer_knows_it(ros1_network: Network) -> None:
+    """The test acts as the action server. After a restart, a server lists no goals."""
 
     async def main() -> None:
         async with ros1_network.lent() as node:

@@ -1,4 +1,4 @@
-"""Nodes against real nodes of rospy and rclpy in other processes."""
+"""The agent's nodes together with real nodes of rospy and rclpy in other processes."""
 
 import asyncio
 import logging
@@ -19,7 +19,7 @@ LATCHED = quality("latched", depth=1, latch=True)
 
 
 async def echo(node: Node) -> list[str]:
-    """Send texts to the other node's /chat, and return what came back on /back."""
+    """Send texts to the peer on /chat; return its answers on /back."""
     heard: list[str] = []
     node.subscribe("/back", "std_msgs/String", lambda message: heard.append(message.data), latest=False, qos=ALL)
     chat = node.advertise("/chat", "std_msgs/String", qos=ALL)
@@ -31,7 +31,7 @@ async def echo(node: Node) -> list[str]:
 
 
 async def numbers(node: Node, got: list[int], count: int) -> list[int]:
-    """Let the other node publish numbers, 1,000 a second; return the numbers from 0 on that arrived in `got`."""
+    """Let the peer publish `count` numbers, 1,000 per second; return those numbers that arrived in `got`."""
     burst = node.advertise("/burst", "std_msgs/String", qos=ALL)
     await until(lambda: got, lambda: burst.publish("-1 1 0"))
     burst.publish(f"0 {count} 1000")
@@ -54,15 +54,14 @@ def test_every_message_of_a_fast_topic_arrives_in_order(either: Network) -> None
             node.subscribe(
                 "/numbers", "std_msgs/Int32", lambda message: got.append(message.data), latest=False, qos=ALL
             )
-            node.subscribe(
-                "/numbers", "std_msgs/Int32", lambda message: None, qos=ALL
-            )  # a channel that skips messages does so only for itself
+            # A second channel of the topic may skip messages. The first channel must get them all the same.
+            node.subscribe("/numbers", "std_msgs/Int32", lambda message: None, qos=ALL)
             assert await numbers(node, got, 400) == list(range(400))
 
     either.run(main)
 
 
-def test_the_latest_message_of_a_fast_topic_replaces_messages_that_wait(either: Network) -> None:
+def test_a_channel_with_a_rate_gets_only_some_messages_of_a_fast_topic(either: Network) -> None:
     async def main() -> None:
         async with either.lent() as node:
             got: list[int] = []
@@ -84,12 +83,12 @@ def test_images_arrive_in_shared_memory_without_a_copy(either: Network) -> None:
             image = got[0]
             assert (image.height, image.width, image.encoding) == (480, 640, "rgb8")
             assert image.data.shape == (640 * 480 * 3,) and image.data.dtype == numpy.uint8
-            assert not image.data.flags.owndata  # a view of the shared memory
+            assert not image.data.flags.owndata  # the array is a view of the shared memory
 
     either.run(main)
 
 
-def test_a_service_answers_and_a_silent_one_times_out(either: Network) -> None:
+def test_a_service_answers_and_a_call_to_a_silent_service_times_out(either: Network) -> None:
     async def main() -> None:
         async with either.lent() as node:
             lamp = node.client("/lamp", "std_srvs/SetBool", timeout=10.0)
@@ -109,7 +108,7 @@ def test_a_service_answers_and_a_silent_one_times_out(either: Network) -> None:
     either.run(main)
 
 
-def test_a_silent_service_leaves_no_thread_in_the_bridge(ros1_network: Network) -> None:
+def test_calls_that_time_out_leave_no_threads_in_the_bridge(ros1_network: Network) -> None:
     async def main() -> None:
         async with ros1_network.lent() as node:
             await node.client("/lamp", "std_srvs/SetBool", timeout=10.0).call(True)
@@ -124,7 +123,7 @@ def test_a_silent_service_leaves_no_thread_in_the_bridge(ros1_network: Network) 
     ros1_network.run(main)
 
 
-def test_our_own_service_is_called_over_the_network(either: Network) -> None:
+def test_a_service_of_the_agent_can_be_called_over_the_network(either: Network) -> None:
     async def main() -> None:
         async with either.lent() as node:
 
@@ -138,7 +137,7 @@ def test_our_own_service_is_called_over_the_network(either: Network) -> None:
     either.run(main)
 
 
-def test_a_killed_bridge_comes_back_with_all_its_channels(either: Network, caplog: pytest.LogCaptureFixture) -> None:
+def test_a_killed_bridge_is_restarted_with_all_its_channels(either: Network, caplog: pytest.LogCaptureFixture) -> None:
     async def main() -> None:
         async with either.lent() as node:
             heard: list[str] = []
@@ -156,14 +155,14 @@ def test_a_killed_bridge_comes_back_with_all_its_channels(either: Network, caplo
             assert node.restarts == before + 1
             signs: list[str] = []
             node.subscribe("/sign", "std_msgs/String", lambda message: signs.append(message.data), qos=LATCHED)
-            await until(lambda: signs)  # the latched message is latched again
+            await until(lambda: signs)  # the new bridge has latched the message again
             assert signs == ["open"]
 
     with caplog.at_level(logging.CRITICAL, "ravestate"):
         either.run(main)
 
 
-def test_a_message_of_the_wrong_type_is_named_and_dropped(either: Network, caplog: pytest.LogCaptureFixture) -> None:
+def test_a_message_of_the_wrong_type_is_reported_and_dropped(either: Network, caplog: pytest.LogCaptureFixture) -> None:
     async def main() -> None:
         async with either.lent() as node:
             got: list[Any] = []
@@ -180,7 +179,7 @@ def test_a_message_of_the_wrong_type_is_named_and_dropped(either: Network, caplo
     )
 
 
-def test_a_message_of_an_uninstalled_package_is_read_from_its_file(ros1_network: Network) -> None:
+def test_a_message_type_that_is_not_installed_is_read_from_its_definition_file(ros1_network: Network) -> None:
     async def main() -> None:
         async with ros1_network.lent() as node:
             got: list[Any] = []
@@ -191,7 +190,7 @@ def test_a_message_of_an_uninstalled_package_is_read_from_its_file(ros1_network:
     ros1_network.run(main)
 
 
-def test_messages_pass_while_the_bridge_stands_still(ros1_network: Network) -> None:
+def test_messages_pass_while_the_bridge_is_stopped(ros1_network: Network) -> None:
     async def main() -> None:
         async with ros1_network.lent() as node:
             heard: list[str] = []
@@ -211,7 +210,7 @@ def test_messages_pass_while_the_bridge_stands_still(ros1_network: Network) -> N
     ros1_network.run(main)
 
 
-def test_a_later_channel_gets_the_message_that_a_publisher_has_latched(ros1_network: Network) -> None:
+def test_a_later_channel_of_a_topic_gets_the_latched_message(ros1_network: Network) -> None:
     async def main() -> None:
         async with ros1_network.lent() as node:
             got: list[Any] = []
@@ -221,7 +220,7 @@ def test_a_later_channel_gets_the_message_that_a_publisher_has_latched(ros1_netw
             await until(lambda: len(got) == 2)
             first.close()
             again = node.subscribe("/own", "robot_msgs/Reading", lambda _: got.append("never"), qos=ALL)
-            again.close()  # before the loop's next turn
+            again.close()  # in the same turn of the loop, so it gets no message
             node.subscribe("/own", "robot_msgs/Reading", got.append, qos=ALL)
             await until(lambda: len(got) == 3)
             assert [message.value for message in got] == [7, 7, 7]
@@ -229,7 +228,7 @@ def test_a_later_channel_gets_the_message_that_a_publisher_has_latched(ros1_netw
     ros1_network.run(main)
 
 
-def test_the_clock_of_a_simulation_arrives_even_if_rospy_would_follow_it(ros1_network: Network) -> None:
+def test_clock_messages_arrive_even_if_the_parameter_use_sim_time_is_set(ros1_network: Network) -> None:
     async def main() -> None:
         async with opened(ros1_network.node()) as node:
             got: list[Any] = []
@@ -245,7 +244,7 @@ def test_the_clock_of_a_simulation_arrives_even_if_rospy_would_follow_it(ros1_ne
             master.deleteParam("/test", "/use_sim_time")
 
 
-def test_two_nodes_without_ros_speak_dds_with_a_package_of_their_own(ros2_network: Network) -> None:
+def test_two_nodes_exchange_messages_over_dds_without_ros(ros2_network: Network) -> None:
     async def main() -> None:
         async with ros2_network.lent(backend="dds") as one, opened(ros2_network.node(backend="dds")) as other:
             got: list[Any] = []
@@ -260,7 +259,7 @@ def test_two_nodes_without_ros_speak_dds_with_a_package_of_their_own(ros2_networ
     ros2_network.run(main)
 
 
-def test_dds_speaks_with_a_real_node(ros2_network: Network) -> None:
+def test_a_node_with_the_dds_backend_exchanges_messages_with_a_real_node(ros2_network: Network) -> None:
     async def main() -> None:
         async with ros2_network.lent(backend="dds") as node:
             assert await echo(node) == [f"echo text {n}" for n in range(3)]
@@ -268,7 +267,7 @@ def test_dds_speaks_with_a_real_node(ros2_network: Network) -> None:
     ros2_network.run(main)
 
 
-def test_a_quality_of_service_that_does_not_fit_is_named(
+def test_an_incompatible_quality_of_service_is_reported_with_the_right_profile(
     ros2_network: Network, caplog: pytest.LogCaptureFixture
 ) -> None:
     async def main() -> None:
@@ -282,7 +281,7 @@ def test_a_quality_of_service_that_does_not_fit_is_named(
     ros2_network.run(main)
 
 
-def test_an_action_gives_feedback_and_a_result_and_is_cancelled(ros2_network: Network) -> None:
+def test_an_action_gives_feedback_and_a_result_and_can_be_cancelled(ros2_network: Network) -> None:
     async def main() -> None:
         async with ros2_network.lent() as node:
             action = node.action("/count", "test_msgs/Fibonacci", timeout=10.0)
@@ -320,12 +319,12 @@ def test_the_graph_names_topics_services_and_types(either: Network) -> None:
             assert found["/back"]["types"] in (["std_msgs/String"], ["std_msgs/msg/String"])
             assert found["/lamp"]["types"] in (["std_srvs/SetBool"], ["std_srvs/srv/SetBool"])
             assert found["/lamp"]["servers"] == 1
-            assert found.get(own.name, {"publishers": 0})["publishers"] == 0  # only other nodes count
+            assert found.get(own.name, {"publishers": 0})["publishers"] == 0  # the graph counts only other nodes
 
     either.run(main)
 
 
-def test_a_killed_master_and_a_killed_peer_come_back(caplog: pytest.LogCaptureFixture) -> None:
+def test_a_node_reconnects_after_a_restart_of_the_master_and_the_peer(caplog: pytest.LogCaptureFixture) -> None:
     network = Ros1()
 
     async def main() -> None:
@@ -349,14 +348,14 @@ def test_a_killed_master_and_a_killed_peer_come_back(caplog: pytest.LogCaptureFi
         network.stop()
 
 
-def test_a_killed_peer_comes_back(either: Network) -> None:
+def test_a_node_reconnects_after_a_restart_of_the_peer(either: Network) -> None:
     async def main() -> None:
         async with either.lent() as node:
             heard: list[str] = []
             node.subscribe("/back", "std_msgs/String", lambda message: heard.append(message.data), qos=ALL)
             chat = node.advertise("/chat", "std_msgs/String", qos=ALL)
             await until(lambda: heard, lambda: chat.publish("one"))
-            await asyncio.to_thread(either.stop_peer)  # by SIGKILL
+            await asyncio.to_thread(either.stop_peer)  # with SIGKILL
             await asyncio.to_thread(either.start_peer)
             heard.clear()
             await until(lambda: heard, lambda: chat.publish("two"))

@@ -1,4 +1,4 @@
-"""The rule that connects a context, and the simulation's clock, on the built-in bus."""
+"""The rules that connect a context with ROS, and follow the clock of a simulation."""
 
 import asyncio
 import itertools
@@ -16,7 +16,7 @@ from ravestate.modules.platform.ros.rules import follow_clock
 ALL = quality(None, depth=10, latch=False)
 
 
-def test_the_clock_of_a_simulation_is_the_clock_of_the_context_at_any_speed_and_halted() -> None:
+def test_the_clock_of_the_context_follows_that_of_a_simulation_at_any_speed() -> None:
     agent = rs.Module("agent", requires=[ros2])
     go = agent.signal("go", input=True)
     waited: list[float] = []
@@ -40,29 +40,28 @@ def test_the_clock_of_a_simulation_is_the_clock_of_the_context_at_any_speed_and_
                 start = context.now
                 times: list[float] = []
                 at(100)
-                await until(
-                    lambda: times.append(context.now) or times[-1:] == times[-2:-1]
-                )  # without a message, time stands still
+                # Without a message, the time of the context does not advance.
+                await until(lambda: times.append(context.now) or times[-1:] == times[-2:-1])
                 begun = context.now
                 assert begun >= start
                 context.emit(go)
                 at(129)
                 await until(lambda: context.now == pytest.approx(begun + 29))
                 assert not waited
-                at(131)  # a minute in an instant: any speed
+                at(131)  # the simulated clock may jump
                 await until(lambda: waited)
                 assert waited == [pytest.approx(begun + 31)]
-                anew = itertools.count(3)
-                await until(lambda: context.now > begun + 31.5, lambda: at(next(anew)))
-                assert context.now < begun + 31 + next(anew)
+                later = itertools.count(3)
+                await until(lambda: context.now > begun + 31.5, lambda: at(next(later)))
+                assert context.now < begun + 31 + next(later)
             await world.close()
 
     asyncio.run(main())
 
 
-def test_the_clock_loses_no_time_when_the_simulation_takes_it_over() -> None:
+def test_no_time_is_lost_when_a_simulation_takes_over_the_clock() -> None:
     class SlowContext:
-        """A context on a slow machine: time passes with each look at the clock, until it is driven."""
+        """A context on a slow machine. Its clock advances at each reading, until a simulation drives it."""
 
         time, driven = 0.0, False
 
@@ -75,7 +74,7 @@ def test_the_clock_loses_no_time_when_the_simulation_takes_it_over() -> None:
             self.time, self.driven = max(self.now, time), True
 
     class Simulation:
-        """A node that receives only the simulation's time."""
+        """A node that receives only the time of a simulation."""
 
         def subscribe(self, topic: str, type: str, take: Any, **options: Any) -> None:
             self.take = take
@@ -92,7 +91,7 @@ def test_the_clock_loses_no_time_when_the_simulation_takes_it_over() -> None:
     assert ctx.now == begun + 29
 
 
-def test_the_clock_of_a_real_simulation_at_ten_times_the_speed_and_halted(either: Network) -> None:
+def test_the_context_follows_a_real_simulation_at_ten_times_the_speed_and_when_halted(either: Network) -> None:
     ros = either.module
     agent = rs.Module("agent", requires=[ros])
     go = agent.signal("go", input=True)
@@ -121,7 +120,7 @@ def test_the_clock_of_a_real_simulation_at_ten_times_the_speed_and_halted(either
             context.emit(go)
             await until(lambda: waited)
             assert waited[0] >= begun + 5.0
-            assert context.now - begun > 2 * (clock() - real)  # the simulation is ahead of this machine's clock
+            assert context.now - begun > 2 * (clock() - real)  # simulated time passes faster than real time
             speed.publish(0.0)
             halted = len(simulated)
             await until(lambda: len(simulated) > halted + 20 and simulated[-20] == pytest.approx(simulated[-1]))
@@ -147,7 +146,7 @@ def test_an_agent_without_ros_ends_with_an_error_that_says_what_to_install() -> 
     asyncio.run(main())
 
 
-def test_the_first_and_the_last_words_of_an_agent_are_published() -> None:
+def test_messages_from_startup_and_shutdown_are_published() -> None:
     agent = rs.Module("agent", requires=[ros2])
     chat = ros2.publisher(agent, "chat", topic="/chat", type="std_msgs/String")
 

@@ -1,4 +1,4 @@
-"""Slots that are topics, services and actions, in whole agents on real networks."""
+"""Slots for topics, services and actions, in whole agents on real networks."""
 
 import asyncio
 import logging
@@ -14,7 +14,7 @@ from ravestate.testing import simulate
 
 
 class Everything:
-    """One agent that is on ROS 1 and ROS 2 at once. The tests of this file share it."""
+    """An agent with slots for ROS 1 and ROS 2. The tests of this file share it."""
 
     def __init__(self) -> None:
         agent = self.module = rs.Module("agent")
@@ -92,7 +92,7 @@ class Everything:
 
     def _talk(self, version: int, ros: Any) -> None:
         agent = self.module
-        # The settings make /back and /chat of these names.
+        # The settings remap these names to /back and /chat.
         back = self.back[version] = ros.subscriber(
             agent, f"back{version}", topic="answers", type="std_msgs/String", keep="all"
         )
@@ -129,7 +129,7 @@ def running(ros1_network: Network, ros2_network: Network) -> Iterator[tuple[Ever
 
 
 @pytest.mark.parametrize("version", [1, 2])
-def test_text_from_one_topic_is_answered_on_another_and_triggers_a_service_call(
+def test_an_agent_publishes_a_text_and_calls_a_service_after_the_answer(
     running: tuple[Everything, rs.Context], ros1_network: Network, version: int
 ) -> None:
     agent, context = running
@@ -144,7 +144,7 @@ def test_text_from_one_topic_is_answered_on_another_and_triggers_a_service_call(
 
 
 @pytest.mark.parametrize("version", [1, 2])
-def test_a_call_to_a_silent_service_fails_and_blocks_nothing_else(
+def test_a_call_to_a_silent_service_fails_and_does_not_block_other_rules(
     running: tuple[Everything, rs.Context], ros1_network: Network, version: int, caplog: pytest.LogCaptureFixture
 ) -> None:
     agent, context = running
@@ -163,7 +163,7 @@ def test_a_call_to_a_silent_service_fails_and_blocks_nothing_else(
 
 
 @pytest.mark.parametrize("way", WAYS)
-def test_until_cancels_the_goal_of_an_action(
+def test_an_until_condition_cancels_the_goal_of_an_action(
     running: tuple[Everything, rs.Context], ros2_network: Network, way: str
 ) -> None:
     agent, context = running
@@ -174,7 +174,7 @@ def test_until_cancels_the_goal_of_an_action(
         context.emit(agent.go[way])
         await until(lambda: agent.fed)
         context.emit(agent.stop)
-        await until(lambda: agent.ended)  # the server was asked to stop, and did
+        await until(lambda: agent.ended)  # the server has reported that it cancelled the goal
         if way == "the writer's until":
             await until(lambda: agent.failures)
             assert agent.failures == ["the goal was cancelled"]
@@ -185,7 +185,9 @@ def test_until_cancels_the_goal_of_an_action(
     ros2_network.run(main)
 
 
-def test_the_result_of_an_action_is_a_change(running: tuple[Everything, rs.Context], ros2_network: Network) -> None:
+def test_the_result_of_an_action_raises_the_changed_signal_of_its_slot(
+    running: tuple[Everything, rs.Context], ros2_network: Network
+) -> None:
     agent, context = running
 
     async def main() -> None:
@@ -197,7 +199,7 @@ def test_the_result_of_an_action_is_a_change(running: tuple[Everything, rs.Conte
     ros2_network.run(main)
 
 
-def test_in_virtual_time_slots_are_written_by_the_test_and_nothing_connects() -> None:
+def test_in_a_simulation_the_test_writes_the_slots_and_no_node_connects() -> None:
     agent = rs.Module("agent", requires=[ros2])
     chat = ros2.subscriber(agent, "chat", topic="/chat", type="std_msgs/String")
     answer = ros2.publisher(agent, "answer", topic="/answer", type="std_msgs/String")
@@ -223,6 +225,6 @@ def test_in_virtual_time_slots_are_written_by_the_test_and_nothing_connects() ->
         ({"qos": {"reliability": "good"}}, "'reliable' or 'best_effort'"),
     ],
 )
-def test_a_wrong_argument_is_refused_where_it_is_declared(wrong: dict[str, Any], words: str) -> None:
+def test_a_wrong_argument_is_refused_at_the_declaration(wrong: dict[str, Any], words: str) -> None:
     with pytest.raises(rs.DeclarationError, match=words):
         ros2.subscriber(rs.Module("agent"), "chat", **{"topic": "/chat", "type": "std_msgs/String", **wrong})

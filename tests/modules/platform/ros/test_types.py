@@ -1,4 +1,4 @@
-"""Types of messages, and messages from plain data."""
+"""Message types and their definitions, and messages made from plain data."""
 
 from pathlib import Path
 from typing import Any
@@ -24,7 +24,9 @@ VALUES: list[tuple[str, Any, Any]] = [
 
 @pytest.mark.parametrize("version", [1, 2])
 @pytest.mark.parametrize(("name", "value", "wanted"), VALUES)
-def test_plain_data_goes_over_the_wire_and_back(version: Any, name: str, value: Any, wanted: Any) -> None:
+def test_plain_data_can_be_encoded_as_a_message_and_decoded_again(
+    version: Any, name: str, value: Any, wanted: Any
+) -> None:
     types = Types(version)
     full = types.require(name)
     message = types.decode(types.encode(value, full), full)
@@ -43,13 +45,13 @@ def test_plain_data_goes_over_the_wire_and_back(version: Any, name: str, value: 
         ("sensor_msgs/CameraInfo", {"header": {"stamp": {"sec": True}}}, "takes int32, not True"),
     ],
 )
-def test_a_value_that_does_not_fit_is_named(name: str, value: Any, words: str) -> None:
+def test_the_message_names_a_value_that_does_not_fit_its_field(name: str, value: Any, words: str) -> None:
     types = Types(2)
     with pytest.raises(PlatformError, match=words):
         types.encode(value, types.require(name))
 
 
-def test_own_definitions_are_read_with_all_that_they_contain() -> None:
+def test_definition_files_are_read_with_the_types_that_they_contain() -> None:
     for version in (1, 2):
         types = Types(version, Definitions((OWN,)))  # type: ignore[arg-type]
         name = types.require("robot_msgs/History", "srv")
@@ -59,7 +61,7 @@ def test_own_definitions_are_read_with_all_that_they_contain() -> None:
         assert plain(again) == {"all": [{"value": 1, "unit": "V"}, {"value": 2, "unit": ""}], "done": True}
 
 
-def test_ros_1_knows_types_by_their_checksums() -> None:
+def test_the_checksums_of_types_are_those_of_ros_1() -> None:
     types = Types(1)
     known = {
         "std_srvs/SetBool": "09fb03525b03e7ea1fd3992bafd87e16",
@@ -95,6 +97,6 @@ def test_an_unknown_or_broken_definition_is_an_error_with_a_reason(tmp_path: Pat
         Types(2).require("String")
 
 
-def test_garbage_from_the_wire_is_an_error() -> None:
+def test_bytes_that_do_not_fit_the_type_are_refused() -> None:
     with pytest.raises(PlatformError, match="not of the type std_msgs/msg/String"):
         Types(2).decode(b"\x00\x01\x00\x00\xff\xff\xff\xff", "std_msgs/msg/String")

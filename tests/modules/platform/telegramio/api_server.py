@@ -1,7 +1,8 @@
-"""A Bot API server on loopback, for tests: the methods that the agent calls, the rules of Telegram, and faults on demand.
+"""A stand-in for Telegram's Bot API server, on this machine: ``python api_server.py PORT FILE``.
 
-It keeps everything in a file, so that it can be killed and started again: ``python api_server.py PORT FILE``. Every
-well-formed token is a separate bot, so tests do not disturb each other. Tests play the users through ``/control``.
+It has the methods that the agent calls, follows the rules of Telegram, and makes calls fail on demand. It keeps
+everything in a file, so a test can kill and restart it. Each well-formed token is a separate bot, so tests do not
+disturb each other. The tests act as users through the path ``/control``.
 """
 
 from __future__ import annotations
@@ -38,7 +39,7 @@ CREATE TABLE IF NOT EXISTS hooks (bot TEXT PRIMARY KEY, url TEXT, secret TEXT);
 
 
 class Refusal(Exception):
-    """An answer other than success."""
+    """A call that the server refuses, with the answer."""
 
     def __init__(self, code: int, description: str, **parameters: Any) -> None:
         super().__init__(description)
@@ -57,11 +58,11 @@ class Server:
         self.db.execute("PRAGMA synchronous=OFF")
         self.db.executescript(TABLES)
         self.changed = asyncio.Condition()
-        self.polls: dict[str, asyncio.Event] = {}  # bot → set to end its request for updates
+        self.polls: dict[str, asyncio.Event] = {}  # for each bot: set this event to end its open request for updates
         self.faults: dict[tuple[str, str], list[dict[str, Any]]] = defaultdict(list)
-        self.banned: dict[tuple[str, str], float] = {}  # bot and chat → the end of a flood wait
+        self.banned: dict[tuple[str, str], float] = {}  # for each bot and chat: the time at which its flood wait ends
         self.calls: dict[str, list[dict[str, Any]]] = defaultdict(list)
-        self.early: dict[str, int] = defaultdict(int)  # calls within a flood wait
+        self.early: dict[str, int] = defaultdict(int)  # for each bot: the number of calls during a flood wait
         self.tasks: dict[str, asyncio.Task[None]] = {}
 
     # ------------------------------------------------------------------------------------ state
@@ -87,7 +88,10 @@ class Server:
             "id": id, "title": "Club", "type": "supergroup" if id < -10**12 else "group"}  # fmt: skip
 
     def add(self, bot: str, chat: int, own: bool, **fields: Any) -> dict[str, Any]:
-        """Add a message to a chat; private chats and small groups share one numbering, large groups have their own."""
+        """Add a message to a chat.
+
+        Private chats and small groups share one numbering of messages. Each large group has its own.
+        """
         id = self.count(bot, str(chat) if chat < -(10**12) else "messages")
         message = {"message_id": id, "date": int(time.time()), "chat": self.chat(chat), **fields}
         self.db.execute(
@@ -320,7 +324,7 @@ class Server:
             result = await getattr(self, method)(bot, arguments)
         except Refusal as refusal:
             return JSONResponse(refusal.body, refusal.code)
-        if kind == "lost":  # the request counts, but its answer never arrives
+        if kind == "lost":  # the request takes effect, but its answer never arrives
             return Broken()
         if kind == "hang":
             with contextlib.suppress(TimeoutError):
@@ -332,7 +336,7 @@ class Server:
         rows = self.all("SELECT data FROM files WHERE id = ?", request.path_params["id"])
         return Response(rows[0][0]) if rows else Response(status_code=404)
 
-    # ------------------------------------------------------------------------------------ what users do
+    # ------------------------------------------------------------------------------------ actions of users and tests
 
     async def control(self, request: Request) -> Response:
         bot, order = request.path_params["token"], request.path_params["order"]
@@ -340,7 +344,7 @@ class Server:
         return JSONResponse(await getattr(self, f"do_{order}")(bot, **a))
 
     async def do_say(self, bot: str, chat: int, text: str | None = None, user: int | None = None, **fields: Any) -> Any:
-        """Let a user write a message with these `fields`."""
+        """Let a user write a message. `fields` are more fields of the message."""
         user = user or chat
         self.db.execute("INSERT OR REPLACE INTO chats VALUES (?, ?, 'open')", (bot, chat))
         sender = {"id": user, "is_bot": False, "first_name": f"User{user}", "username": f"user{user}"}
@@ -380,7 +384,7 @@ class Server:
                     "user": me, "status": "kicked", "until_date": 0}})  # fmt: skip
 
     async def do_update(self, bot: str, data: dict[str, Any]) -> Any:
-        """Report any update, such as a malformed one."""
+        """Report an arbitrary update, e.g. a malformed one."""
         return await self.update(bot, "", data)
 
     async def do_upload(self, bot: str, size: int = 0, text: str = "", hexed: str = "") -> Any:
@@ -397,7 +401,7 @@ class Server:
             del self.faults[key]
 
     async def do_said(self, bot: str, count: int = 0, wait: float = 100.0) -> Any:
-        """Return the bot's messages in all chats, once there are `count` messages, or after some seconds."""
+        """Wait until there are `count` messages of the bot, but at most `wait` seconds. Return its messages."""
 
         def said() -> list[Any]:
             rows = self.all("SELECT data FROM messages WHERE bot = ? AND own ORDER BY n", bot)
@@ -410,8 +414,10 @@ class Server:
         return said()
 
     async def do_called(self, bot: str, method: str, count: int = 0, wait: float = 100.0) -> Any:
-        """Return the calls of a method, once there are `count`, or after some seconds; and the number of calls during a
-        flood wait."""
+        """Wait until there are `count` calls of a method, but at most `wait` seconds.
+
+        Return these calls, and the number of all calls during a flood wait.
+        """
 
         def calls() -> list[Any]:
             return [call for call in self.calls[bot] if call["method"] == method]
@@ -422,7 +428,7 @@ class Server:
         return {"calls": calls(), "early": self.early[bot]}
 
     async def do_message(self, bot: str, chat: int, id: int) -> Any:
-        """Return a message in its present form."""
+        """Return a message with all its edits and reactions."""
         [(data,)] = self.all("SELECT data FROM messages WHERE bot = ? AND chat = ? AND id = ?", bot, chat, id)
         return json.loads(data)
 
@@ -439,7 +445,7 @@ METHODS = [
 
 
 class Broken(Response):
-    """An answer that ends too early."""
+    """An answer whose body is shorter than its content length."""
 
     async def __call__(self, scope: Any, receive: Any, send: Any) -> None:
         await send({"type": "http.response.start", "status": 200, "headers": [(b"content-length", b"1000")]})
@@ -447,7 +453,7 @@ class Broken(Response):
 
 
 class Announced(uvicorn.Server):
-    """A server that prints a line once it listens."""
+    """A server that prints ``ready`` when it listens."""
 
     async def startup(self, sockets: Any = None) -> None:
         await super().startup(sockets)
@@ -455,7 +461,7 @@ class Announced(uvicorn.Server):
 
 
 async def form(request: Request) -> dict[str, Any]:
-    """Return the arguments of a call, from either kind of form."""
+    """Return the arguments of a call, from a URL-encoded or a multipart form."""
     body = await request.body()
     kind = request.headers.get("content-type", "")
     if not kind.startswith("multipart/form-data"):
@@ -477,7 +483,7 @@ async def form(request: Request) -> dict[str, Any]:
 
 
 def application(file: str) -> Starlette:
-    """The server as an application."""
+    """Return an application that serves the Bot API and ``/control``."""
     server = Server(file)
 
     @contextlib.asynccontextmanager

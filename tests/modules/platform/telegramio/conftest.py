@@ -1,4 +1,4 @@
-"""The fixtures of Telegram's tests: a Bot API server in a process of its own, and bots on it."""
+"""Fixtures of the Telegram tests: a stand-in for the Bot API server in a separate process, and its bots."""
 
 import itertools
 import os
@@ -44,7 +44,7 @@ class Telegram:
 
 
 class Bot:
-    """A bot on a server, and all its users."""
+    """A bot on a server. It also acts as all users of the bot."""
 
     def __init__(self, telegram: Telegram) -> None:
         self.telegram = telegram
@@ -63,7 +63,7 @@ class Bot:
         return await self.do("say", chat=chat, text=text, **fields)
 
     async def said(self, count: int) -> list[str]:
-        """Return the bot's messages as "chat: text", once there are `count` messages."""
+        """Wait until there are `count` messages of the bot; return them as "chat: text"."""
         return [f"{m['chat']['id']}: {m.get('text', m.get('caption'))}" for m in await self.do("said", count=count)]
 
 

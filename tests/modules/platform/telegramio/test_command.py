@@ -1,4 +1,4 @@
-"""``ravestate run telegramio``: its messages, and the words with which it ends."""
+"""``ravestate run telegramio``: its messages at the start and at the end."""
 
 import os
 import signal
@@ -25,7 +25,7 @@ def test_without_a_token_the_command_says_how_to_get_one() -> None:
     assert "Traceback" not in said
 
 
-def test_a_wrong_token_is_named_but_not_shown(bot: Bot) -> None:
+def test_a_wrong_token_ends_the_command_with_a_message_that_does_not_show_it(bot: Bot) -> None:
     token = f"{bot.token}-wrong"
     process = run("--set", f"telegramio.base_url={bot.telegram.root}/bot", RAVESTATE_TELEGRAMIO_TOKEN=token)
     _, said = process.communicate(timeout=60)
@@ -35,7 +35,7 @@ def test_a_wrong_token_is_named_but_not_shown(bot: Bot) -> None:
     assert "Traceback" not in said
 
 
-def test_the_bot_announces_itself_and_ends_cleanly(bot: Bot) -> None:
+def test_the_command_prints_the_name_of_the_bot_and_ends_cleanly(bot: Bot) -> None:
     base = f"telegramio.base_url={bot.telegram.root}/bot"
     process = run("--set", base, RAVESTATE_TELEGRAMIO_TOKEN=bot.token)
     assert process.stdout is not None

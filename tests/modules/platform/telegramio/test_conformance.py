@@ -1,4 +1,4 @@
-"""Telegram passes the checks of platforms, with the agent in a process of its own."""
+"""Telegram passes the checks for platforms, with the agent in a separate process."""
 
 import asyncio
 from collections.abc import Awaitable, Callable
@@ -12,7 +12,7 @@ from ravestate.testing import CHECKS, Driver
 
 
 class Users:
-    """The users of a bot whose agent runs in a process of its own."""
+    """An agent in a separate process, and the users of its bot."""
 
     def __init__(self, bot: Bot, folder: Path) -> None:
         self._bot = bot
@@ -45,5 +45,7 @@ class Users:
 
 
 @pytest.mark.parametrize("check", CHECKS)
-def test_telegram_conforms(check: Callable[[Driver], Awaitable[None]], bot: Bot, tmp_path: Path) -> None:
+def test_telegram_passes_the_checks_for_platforms(
+    check: Callable[[Driver], Awaitable[None]], bot: Bot, tmp_path: Path
+) -> None:
     asyncio.run(check(Users(bot, tmp_path)))

@@ -1,4 +1,4 @@
-"""The agent or the server dies in the middle of 200 conversations: no message is lost, and none is answered twice."""
+"""The agent and the server are killed during 200 conversations. Each message still gets exactly one answer."""
 
 import asyncio
 import random
@@ -25,7 +25,7 @@ async def repeat(ctx):
 
 
 def robin(bot: Bot, folder: Path, module: str) -> AgentProcess:
-    """Return an agent with a module, in a process of its own."""
+    """Return an agent with a module, in a separate process."""
     address, path = f"{bot.telegram.root}/bot", folder / "chats.sqlite"
     return AgentProcess("telegramio", module, token=bot.token, base_url=address, path=path, rate=1000)
 
@@ -49,7 +49,9 @@ def by_chat(said: list[str]) -> dict[int, list[str]]:
     return found
 
 
-def test_two_hundred_chats_outlive_kills_of_the_agent_and_of_the_server(own_telegram: Telegram, tmp_path: Path) -> None:
+def test_no_message_is_lost_or_answered_twice_when_agent_and_server_are_killed(
+    own_telegram: Telegram, tmp_path: Path
+) -> None:
     bot = Bot(own_telegram)
     chance = random.Random(7)
 
@@ -76,7 +78,7 @@ def test_two_hundred_chats_outlive_kills_of_the_agent_and_of_the_server(own_tele
     asyncio.run(test())
 
 
-def test_an_agent_that_ends_cleanly_leaves_nothing_behind(own_telegram: Telegram, tmp_path: Path) -> None:
+def test_after_a_clean_end_and_a_restart_each_message_is_answered_once(own_telegram: Telegram, tmp_path: Path) -> None:
     bot = Bot(own_telegram)
 
     async def test() -> None:

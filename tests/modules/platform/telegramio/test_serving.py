@@ -1,4 +1,4 @@
-"""An agent on Telegram, against a server of the Bot API in a process of its own."""
+"""An agent on Telegram, with a stand-in for the Bot API server in a separate process."""
 
 import asyncio
 import contextlib
@@ -84,14 +84,14 @@ def live(test: Callable[[Bot, Path], Coroutine[Any, Any, None]]) -> Callable[[Bo
 
 
 async def settled(bot: Bot) -> list[str]:
-    """Send a last message. Once it is answered, return the bot's messages."""
+    """Send a last message, wait for its answer, and return the bot's other messages."""
     said = await bot.said(0)
     await bot.say(99, "the last")
     return [each for each in await bot.said(len(said) + 1) if each != "99: the last"]
 
 
 @live
-async def test_the_agent_answers(bot: Bot, tmp_path: Path) -> None:
+async def test_the_agent_answers_a_message(bot: Bot, tmp_path: Path) -> None:
     async with running(bot, tmp_path):
         await bot.say(7, "Hello")
         assert await bot.said(1) == ["7: Hello"]
@@ -106,7 +106,7 @@ async def test_messages_of_a_chat_are_answered_in_order(bot: Bot, tmp_path: Path
 
 
 @live
-async def test_a_new_user_is_greeted_by_name_and_once(bot: Bot, tmp_path: Path) -> None:
+async def test_a_new_user_is_greeted_by_name_and_only_once(bot: Bot, tmp_path: Path) -> None:
     async with running(bot, tmp_path, parrot, host, rest=0.2):
         await bot.say(7, "/start")
         assert await bot.said(1) == ["7: Hello User7!"]
@@ -118,7 +118,7 @@ async def test_a_new_user_is_greeted_by_name_and_once(bot: Bot, tmp_path: Path) 
 
 
 @live
-async def test_commands_explain_end_and_forget(bot: Bot, tmp_path: Path) -> None:
+async def test_the_commands_help_stop_and_forget_work(bot: Bot, tmp_path: Path) -> None:
     async with running(bot, tmp_path, parrot, host):
         await bot.say(7, "/help")
         said = await bot.said(2)
@@ -135,14 +135,14 @@ async def test_commands_explain_end_and_forget(bot: Bot, tmp_path: Path) -> None
 
 
 @live
-async def test_start_is_explained_by_an_agent_that_does_not_greet(bot: Bot, tmp_path: Path) -> None:
+async def test_an_agent_without_a_greeting_answers_start_with_an_explanation(bot: Bot, tmp_path: Path) -> None:
     async with running(bot, tmp_path):
         await bot.say(7, "/start")
         assert (await bot.said(1))[0].startswith("7: I am Ravestate.")
 
 
 @live
-async def test_an_edited_message_changes_its_answer(bot: Bot, tmp_path: Path) -> None:
+async def test_editing_the_last_message_changes_its_answer(bot: Bot, tmp_path: Path) -> None:
     async with running(bot, tmp_path):
         message = await bot.say(7, "I like tee")
         assert await bot.said(1) == ["7: I like tee"]
@@ -151,12 +151,12 @@ async def test_an_edited_message_changes_its_answer(bot: Bot, tmp_path: Path) ->
         assert await settled(bot) == ["7: I like tea"]
         await bot.say(7, "And coffee")
         await bot.said(3)
-        await bot.do("edit", chat=7, id=message["message_id"], text="I like tea!")  # this is no longer the last message
+        await bot.do("edit", chat=7, id=message["message_id"], text="I like tea!")  # no longer the last message
         assert await settled(bot) == ["7: I like tea", "7: And coffee"]
 
 
 @live
-async def test_a_group_is_answered_when_it_speaks_to_the_agent(bot: Bot, tmp_path: Path) -> None:
+async def test_in_a_group_the_agent_answers_only_messages_that_address_it(bot: Bot, tmp_path: Path) -> None:
     async with running(bot, tmp_path):
         await bot.say(-5, "Hello all", user=7)
         first = await bot.say(-5, "Hello @robin_bot", user=7)
@@ -172,18 +172,18 @@ async def test_a_group_is_answered_when_it_speaks_to_the_agent(bot: Bot, tmp_pat
 
 
 @live
-async def test_an_emoji_alone_becomes_a_reaction(bot: Bot, tmp_path: Path) -> None:
+async def test_an_answer_of_only_an_emoji_becomes_a_reaction(bot: Bot, tmp_path: Path) -> None:
     async with running(bot, tmp_path):
         message = await bot.say(7, "❤️")
         await bot.do("called", method="setMessageReaction", count=1)
         await settled(bot)
         assert (await bot.do("message", chat=7, id=message["message_id"]))["reaction"] == ["❤"]
-        await bot.say(7, "🦭")  # an emoji that Telegram does not allow as a reaction
+        await bot.say(7, "🦭")  # Telegram does not allow this emoji as a reaction
         assert "7: 🦭" in await bot.said(2)
 
 
 @live
-async def test_the_agent_notices_a_reaction(bot: Bot, tmp_path: Path) -> None:
+async def test_a_reaction_of_the_user_reaches_the_agent(bot: Bot, tmp_path: Path) -> None:
     async with running(bot, tmp_path):
         await bot.say(7, "Hello")
         [said] = await bot.do("said", count=1)
@@ -192,7 +192,7 @@ async def test_the_agent_notices_a_reaction(bot: Bot, tmp_path: Path) -> None:
 
 
 @live
-async def test_a_picture_of_20_MB_is_seen_with_its_caption(bot: Bot, tmp_path: Path) -> None:
+async def test_a_picture_of_20_MB_and_its_caption_reach_the_agent(bot: Bot, tmp_path: Path) -> None:
     async with running(bot, tmp_path):
         size = 20 * 1024 * 1024
         file = await bot.do("upload", size=size)
@@ -212,7 +212,7 @@ async def test_a_file_is_fetched_again_after_a_failure(bot: Bot, tmp_path: Path)
 
 
 @live
-async def test_the_agent_shows_that_it_writes(bot: Bot, tmp_path: Path) -> None:
+async def test_the_chat_shows_that_the_agent_is_writing(bot: Bot, tmp_path: Path) -> None:
     slow = rs.Module("slow", requires=(rawio,))
     done = asyncio.Event()
 
@@ -229,7 +229,7 @@ async def test_the_agent_shows_that_it_writes(bot: Bot, tmp_path: Path) -> None:
 
 
 @live
-async def test_a_growing_answer_is_a_draft_in_a_private_chat_and_then_a_message(bot: Bot, tmp_path: Path) -> None:
+async def test_in_a_private_chat_a_growing_answer_is_a_draft_and_then_a_message(bot: Bot, tmp_path: Path) -> None:
     go = asyncio.Event()
     writer = rs.Module("writer", requires=(rawio,))
 
@@ -254,13 +254,13 @@ async def test_a_growing_answer_is_a_draft_in_a_private_chat_and_then_a_message(
         go.set()
         assert (await bot.said(2))[1:] == ["-5: I think so."]
         go.clear()
-        await bot.do("fault", method="sendMessageDraft", kind="lost")  # a draft that fails does no harm
+        await bot.do("fault", method="sendMessageDraft", kind="lost")  # the failure of a draft has no other effect
         await bot.say(8, "Is it?")
         await drafts(2)
         go.set()
         assert (await bot.said(3))[2:] == ["8: I think so."]
         go.clear()
-        await bot.do("fault", method="sendMessageDraft", kind="404")  # an older server
+        await bot.do("fault", method="sendMessageDraft", kind="404")  # as from an older server
         await bot.say(9, "Is it?")
         await bot.do("called", method="sendChatAction", count=2)
         go.set()
@@ -269,7 +269,7 @@ async def test_a_growing_answer_is_a_draft_in_a_private_chat_and_then_a_message(
 
 
 @live
-async def test_a_long_answer_comes_in_parts(bot: Bot, tmp_path: Path) -> None:
+async def test_a_long_answer_is_sent_in_several_messages(bot: Bot, tmp_path: Path) -> None:
     tale = " ".join(f"Sentence {n} ends." for n in range(400))
     wordy = rs.Module("wordy", requires=(rawio,))
 
@@ -284,7 +284,7 @@ async def test_a_long_answer_comes_in_parts(bot: Bot, tmp_path: Path) -> None:
 
 
 @live
-async def test_only_allowed_people_get_an_answer(bot: Bot, tmp_path: Path) -> None:
+async def test_the_agent_answers_only_people_in_the_setting_allow(bot: Bot, tmp_path: Path) -> None:
     async with running(bot, tmp_path, allow=(7, "@User8", 99)):
         for chat in (9, 8, 7):
             await bot.say(chat, "Hello")
@@ -309,7 +309,7 @@ async def test_a_voice_note_is_understood_and_answered_by_voice(bot: Bot, tmp_pa
 
 
 @live
-async def test_a_webhook_takes_the_place_of_polling(bot: Bot, tmp_path: Path) -> None:
+async def test_the_agent_gets_messages_by_webhook_or_by_polling(bot: Bot, tmp_path: Path) -> None:
     port = free_port()
     address = {"webhook": f"http://127.0.0.1:{port}/telegram", "port": port}
     async with running(bot, tmp_path, **address):
@@ -327,7 +327,7 @@ async def test_a_webhook_takes_the_place_of_polling(bot: Bot, tmp_path: Path) ->
 
 
 @live
-async def test_a_flood_wait_is_obeyed_and_nothing_is_lost(bot: Bot, tmp_path: Path) -> None:
+async def test_the_agent_respects_a_flood_wait_and_loses_no_message(bot: Bot, tmp_path: Path) -> None:
     async with running(bot, tmp_path):
         await bot.do("fault", method="sendMessage", kind="429", retry_after=1, chat="7")
         for n in range(5):
@@ -335,12 +335,12 @@ async def test_a_flood_wait_is_obeyed_and_nothing_is_lost(bot: Bot, tmp_path: Pa
         await bot.say(8, "another chat")
         said = await bot.said(6)
         assert [each for each in said if each.startswith("7")] == [f"7: message {n}" for n in range(5)]
-        assert said[0] == "8: another chat"  # it does not wait for chat 7
+        assert said[0] == "8: another chat"  # chat 8 does not wait for chat 7
         assert (await bot.do("called", method="sendMessage"))["early"] == 0
 
 
 @pytest.mark.parametrize("kind", ["500", "502", "503", "garbage", "lost"])
-def test_nothing_is_lost_or_doubled_after_a_failed_answer(bot: Bot, tmp_path: Path, kind: str) -> None:
+def test_after_failed_calls_no_message_is_lost_or_answered_twice(bot: Bot, tmp_path: Path, kind: str) -> None:
     @live
     async def test(bot: Bot, folder: Path) -> None:
         async with running(bot, folder):
@@ -357,7 +357,9 @@ def test_nothing_is_lost_or_doubled_after_a_failed_answer(bot: Bot, tmp_path: Pa
 
 
 @live
-async def test_a_lost_answer_is_found_behind_many_messages_of_others(bot: Bot, tmp_path: Path) -> None:
+async def test_after_a_lost_response_an_answer_is_not_sent_twice_despite_many_other_messages(
+    bot: Bot, tmp_path: Path
+) -> None:
     slow = rs.Module("slow", requires=(rawio,))
     go = asyncio.Event()
 
@@ -371,7 +373,7 @@ async def test_a_lost_answer_is_found_behind_many_messages_of_others(bot: Bot, t
         await bot.do("called", method="sendChatAction", count=1)
         await bot.do("fault", method="getUpdates", kind="500", times=10**6)
         polls = (await bot.do("called", method="getUpdates"))["calls"]
-        await bot.say(8, "Hello")  # ends the request for updates that is open
+        await bot.say(8, "Hello")  # this ends the open request for updates
         await bot.do("called", method="getUpdates", count=len(polls) + 1)
         await bot.do("crowd", messages=[{"chat": chat, "text": "Hello"} for chat in range(100, 200)])
         await bot.do("fault", method="sendMessage", kind="lost", times=2)
@@ -383,7 +385,7 @@ async def test_a_lost_answer_is_found_behind_many_messages_of_others(bot: Bot, t
 
 
 @pytest.mark.parametrize("method", ["sendMessage", "getUpdates", "getFile"])
-def test_a_server_that_does_not_answer_in_time_is_asked_again(
+def test_a_call_without_a_timely_response_is_repeated(
     bot: Bot, tmp_path: Path, monkeypatch: pytest.MonkeyPatch, method: str
 ) -> None:
     monkeypatch.setattr("ravestate.modules.platform.telegramio.bot.ANSWER", 0.5)
@@ -402,7 +404,9 @@ def test_a_server_that_does_not_answer_in_time_is_asked_again(
     test(bot, tmp_path)
 
 
-def test_updates_that_cannot_be_kept_come_again(bot: Bot, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+def test_updates_that_cannot_be_stored_are_requested_again(
+    bot: Bot, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
     failures = fill_disk(monkeypatch)
 
     @live
@@ -416,7 +420,7 @@ def test_updates_that_cannot_be_kept_come_again(bot: Bot, tmp_path: Path, monkey
 
 
 @live
-async def test_malformed_updates_are_left_out(bot: Bot, tmp_path: Path) -> None:
+async def test_malformed_updates_are_ignored(bot: Bot, tmp_path: Path) -> None:
     async with running(bot, tmp_path):
         await bot.do("update", data={"message": {"message_id": "x"}})
         await bot.do("update", data={"message": 7})
@@ -428,7 +432,7 @@ async def test_malformed_updates_are_left_out(bot: Bot, tmp_path: Path) -> None:
 
 
 @live
-async def test_a_left_group_and_a_blocked_bot_stop_nothing_else(bot: Bot, tmp_path: Path) -> None:
+async def test_the_agent_continues_after_a_group_removes_it_or_a_user_blocks_it(bot: Bot, tmp_path: Path) -> None:
     async with running(bot, tmp_path):
         await bot.say(-5, "Robin, hello", user=7)
         await bot.said(1)
@@ -442,7 +446,7 @@ async def test_a_left_group_and_a_blocked_bot_stop_nothing_else(bot: Bot, tmp_pa
 
 
 @live
-async def test_a_group_that_gets_another_id_is_still_answered(bot: Bot, tmp_path: Path) -> None:
+async def test_a_group_that_gets_another_id_still_gets_its_answer(bot: Bot, tmp_path: Path) -> None:
     async with running(bot, tmp_path):
         new = -(10**12) - 5
         await bot.say(new, "Robin, hello", user=7)
@@ -454,7 +458,7 @@ async def test_a_group_that_gets_another_id_is_still_answered(bot: Bot, tmp_path
 
 
 @live
-async def test_updates_that_come_twice_are_answered_once(bot: Bot, tmp_path: Path) -> None:
+async def test_updates_that_are_delivered_twice_are_answered_only_once(bot: Bot, tmp_path: Path) -> None:
     async with running(bot, tmp_path):
         message = await bot.say(7, "Hello")
         await bot.said(1)
@@ -465,11 +469,11 @@ async def test_updates_that_come_twice_are_answered_once(bot: Bot, tmp_path: Pat
         assert await settled(bot) == ["7: Hello"]
 
 
-# ------------------------------------------------------------------------------------ the token, and others
+# ------------------------------------------------------------------------------------ the token, and other agents
 
 
 @live
-async def test_a_wrong_token_is_explained_without_showing_it(bot: Bot, tmp_path: Path) -> None:
+async def test_a_wrong_token_ends_the_agent_with_a_message_that_does_not_show_it(bot: Bot, tmp_path: Path) -> None:
     bot.token = f"{bot.token}-wrong"
     async with running(bot, tmp_path) as task:
         with pytest.raises(PlatformError, match=r"refuses the token.*BotFather") as caught:
@@ -477,20 +481,22 @@ async def test_a_wrong_token_is_explained_without_showing_it(bot: Bot, tmp_path:
     assert bot.token not in str(caught.value)
 
 
-def test_a_missing_token_is_explained() -> None:
+def test_a_missing_token_ends_the_agent_with_advice() -> None:
     with pytest.raises(PlatformError, match="export RAVESTATE_TELEGRAMIO_TOKEN"):
         asyncio.run(telegramio.serve(Agent(parrot, telegramio)))
 
 
 @live
-async def test_another_program_that_gets_the_messages_is_named(bot: Bot, tmp_path: Path) -> None:
+async def test_the_agent_ends_with_an_error_if_another_program_gets_its_messages(bot: Bot, tmp_path: Path) -> None:
     await bot.do("fault", method="getUpdates", kind="409", times=100)
     async with running(bot, tmp_path) as task:
         with pytest.raises(PlatformError, match="another program gets the messages"):
             await task
 
 
-def test_the_newer_of_two_agents_of_one_bot_gives_up(bot: Bot, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+def test_of_two_agents_with_one_bot_the_newer_one_ends(
+    bot: Bot, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
     @live
     async def test(bot: Bot, folder: Path) -> None:
         monkeypatch.setattr("ravestate.modules.platform.telegramio.bot.SETTLED", 0.0)
@@ -508,7 +514,7 @@ def test_the_newer_of_two_agents_of_one_bot_gives_up(bot: Bot, tmp_path: Path, m
 
 
 @live
-async def test_two_agents_do_not_share_a_file(bot: Bot, tmp_path: Path) -> None:
+async def test_a_second_agent_on_the_same_file_is_refused(bot: Bot, tmp_path: Path) -> None:
     async with running(bot, tmp_path):
         await bot.say(7, "Hello")
         await bot.said(1)
@@ -529,7 +535,8 @@ def test_the_token_is_never_logged(bot: Bot, tmp_path: Path, caplog: pytest.LogC
             await bot.said(1)
 
     test(bot, tmp_path)
-    theirs = [r for r in caplog.records if f"/control/{bot.token}" not in r.getMessage()]  # the test's own requests
+    # Skip the requests of the test itself.
+    theirs = [r for r in caplog.records if f"/control/{bot.token}" not in r.getMessage()]
     logged = "\n".join(f"{r.getMessage()} {r.exc_text}" for r in theirs)
     assert "[secret]" in logged
     assert bot.token not in logged

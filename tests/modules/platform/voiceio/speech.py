@@ -1,4 +1,4 @@
-"""Recordings for the tests: synthesised speech at given times, and speech of people."""
+"""Sound for the tests: synthesised speech at given times, and recordings of people."""
 
 from __future__ import annotations
 
@@ -20,7 +20,7 @@ from ravestate.modules.platform.voiceio.synthesiser import Synthesiser
 FOLDER = Path(sys.prefix) / "share" / "ravestate" / "voice"
 PEOPLE = Path("/usr/share/pocketsphinx/test/data")
 FAST = {"voiceio": {"model": "tiny.en", "voice": "espeak", "captions": 0}}
-"""Settings for quick conversations."""
+"""Settings with which conversations need little computing time."""
 
 
 @lru_cache(maxsize=8)
@@ -30,9 +30,9 @@ def voice(name: str = "piper") -> Synthesiser:
 
 @lru_cache(maxsize=256)
 def spoken(text: str, name: str = "piper") -> bytes:
-    """Return the sound of a text, as the microphone hears it, without silence at its ends.
+    """Return a text as sound for a microphone (16 kHz), without silence at the beginning and the end.
 
-    The voice is monotonous. Otherwise, its sound would depend on earlier texts, and so on the order of the tests.
+    The voice is monotonous, because otherwise its sound would depend on earlier texts and on the order of the tests.
     """
     pcm = sound.resample(voice(name).speak(text, Prosody(range=0.0)).sound, 24000, 16000)
     loud = np.flatnonzero(np.abs(sound.samples(pcm).astype(int)) > 150)
@@ -40,7 +40,7 @@ def spoken(text: str, name: str = "piper") -> bytes:
 
 
 def track(*parts: tuple[float, str | bytes], length: float = 0.0, name: str = "piper") -> bytes:
-    """Return a track with each text (or sound) at its time."""
+    """Return a recording in which each part begins at its time (seconds). A part is a text or a sound."""
     found = np.zeros(round(length * 16000))
     for at, what in parts:
         part = sound.samples(spoken(what, name) if isinstance(what, str) else what).astype(float)
@@ -60,7 +60,7 @@ def wav(path: Path, pcm: bytes) -> Path:
 
 
 def word_errors(wanted: str, found: str) -> int:
-    """Return the number of missing, wrong and superfluous words."""
+    """Return the number of missing, wrong and superfluous words in `found`, compared with `wanted`."""
     a, b = plain(wanted), plain(found)
     row = list(range(len(b) + 1))
     for i, x in enumerate(a, 1):
@@ -84,7 +84,7 @@ STORY = (
 
 
 def storyteller(slow: float = 0.0) -> rs.Module:
-    """An agent that tells a story piece by piece, and says good night to everything else, after some time."""
+    """Return a module that tells a story piece by piece. To all other inputs, it says good night after `slow` seconds."""
     module = rs.Module("storyteller", requires=[rawio])
 
     @module.rule(
@@ -112,7 +112,7 @@ def storyteller(slow: float = 0.0) -> rs.Module:
 
 
 class Scripted:
-    """A recogniser that returns the given texts, one after another, and then repeats the last text."""
+    """A stand-in for a recogniser. It returns the given texts one after another, and then repeats the last one."""
 
     busy = False
 
@@ -121,7 +121,7 @@ class Scripted:
         self.confidence = confidence
         self.heard: list[float] = []
         self.begun = threading.Event()
-        """Set as soon as a recognition begins."""
+        """Set when a recognition begins."""
 
     def __call__(self, _: Any) -> Scripted:
         return self

@@ -1,4 +1,4 @@
-"""People's speech is speech; noise, music and silence are not."""
+"""Finding speech in sound: people's speech is found, but noise, music and silence do not count as speech."""
 
 import numpy as np
 import pytest
@@ -13,11 +13,11 @@ def test_speech_of_people_is_found(name: str) -> None:
     pcm = sound.decode(PEOPLE / name, 16000)
     spans = speech_spans(bytes(16000) + pcm + bytes(16000))
     assert 0.6 * sound.seconds(pcm, 16000) < sum(end - begin for begin, end in spans)
-    assert spans[0][0] >= 0.45  # not in the silence before
+    assert spans[0][0] >= 0.45  # not in the half second of silence before the speech
 
 
 def music(length: float) -> bytes:
-    """Chords of four notes with overtones."""
+    """Return a sequence of chords of four notes with overtones."""
     time = np.arange(int(length * 16000)) / 16000
     wave = np.zeros(len(time))
     for bar, root in enumerate((220.0, 174.6, 261.6, 196.0)):

@@ -1,4 +1,4 @@
-"""A line to devices: PortAudio's callbacks become blocks, and an unplugged device is opened again."""
+"""A line to audio devices: PortAudio's callbacks deliver blocks of sound, and an unplugged device is reopened."""
 
 from __future__ import annotations
 
@@ -16,7 +16,7 @@ from ravestate.modules.platform.voiceio.synthesiser import Spoken
 
 
 class PortAudio:
-    """A stand-in for sounddevice, with one microphone and one loudspeaker that the test moves by hand."""
+    """A stand-in for sounddevice, with one microphone and one loudspeaker. The tests call their callbacks."""
 
     class PortAudioError(Exception):
         pass
@@ -77,7 +77,7 @@ def audio(monkeypatch: pytest.MonkeyPatch) -> PortAudio:
     return one
 
 
-def test_sound_goes_both_ways(audio: PortAudio) -> None:
+def test_sound_passes_from_the_microphone_and_to_the_loudspeaker(audio: PortAudio) -> None:
     async def follow() -> None:
         line = DeviceLine("default", "Headset")
         assert (audio.microphone.rate, audio.loudspeaker.rate) == (16000, 24000)
@@ -102,14 +102,14 @@ def test_sound_goes_both_ways(audio: PortAudio) -> None:
     run(follow)
 
 
-def test_an_unplugged_microphone_is_opened_again(audio: PortAudio) -> None:
+def test_an_unplugged_microphone_is_reopened_when_it_is_back(audio: PortAudio) -> None:
     async def follow() -> None:
         line = DeviceLine()
         first = audio.microphone
         blocks = line.blocks()
         first.take(bytes(640))
         await anext(blocks)
-        audio.broken = "microphone"  # and no block comes any more
+        audio.broken = "microphone"  # from now on, no blocks arrive
 
         def plug_in() -> None:
             audio.broken = ""
@@ -127,19 +127,19 @@ def test_an_unplugged_microphone_is_opened_again(audio: PortAudio) -> None:
     run(follow)
 
 
-def test_a_loudspeaker_that_goes_away_does_not_stop_the_agent(
+def test_the_agent_continues_without_its_loudspeaker_and_finds_it_again(
     audio: PortAudio, caplog: pytest.LogCaptureFixture
 ) -> None:
-    """The agent listens on. It looks for the loudspeaker when it has something to say."""
+    """The agent keeps listening. It looks for the loudspeaker only when it has something to say."""
 
     async def follow() -> None:
         line = DeviceLine("default", "Headset")
         first = audio.loudspeaker
-        moving = asyncio.create_task(move_microphone(audio))
+        feeding = asyncio.create_task(feed_microphone(audio))
         first.give()
         line.play(bytes(9600))
         first.give()
-        audio.broken = "loudspeaker"  # and no sound is taken any more
+        audio.broken = "loudspeaker"  # from now on, the loudspeaker takes no sound
         await line.drained()
         assert line.lost == 1 and not first.open and line.played == 960 / 48000
         blocks = line.blocks()
@@ -159,15 +159,15 @@ def test_a_loudspeaker_that_goes_away_does_not_stop_the_agent(
         await line.drained()
         assert audio.loudspeaker.device == "Headset" and line.lost == 3 and line.played == 3 * 960 / 48000
         line.close()
-        moving.cancel()
+        feeding.cancel()
 
     run(follow)
     assert "the loudspeaker is gone: looking for it again" in caplog.messages
     assert caplog.messages[-1] == "the loudspeaker is back"
 
 
-async def move_microphone(audio: PortAudio) -> None:
-    """Bring a block every 20 ms."""
+async def feed_microphone(audio: PortAudio) -> None:
+    """Deliver a block every 20 ms."""
     loop = asyncio.get_running_loop()
     while True:
         audio.microphone.take(bytes(640))
@@ -176,11 +176,11 @@ async def move_microphone(audio: PortAudio) -> None:
         await tick
 
 
-def test_a_long_speech_ends_without_its_loudspeaker(audio: PortAudio) -> None:
+def test_a_long_speech_ends_even_if_the_loudspeaker_is_lost(audio: PortAudio) -> None:
     async def follow() -> None:
         line = DeviceLine("", "default")
         assert audio.microphone is None
-        mouth = Mouth(line, None)  # type: ignore[arg-type]  # synthesis is no part of this test
+        mouth = Mouth(line, None)  # type: ignore[arg-type]  # this test needs no synthesiser
         audio.broken = "loudspeaker"
         mouth.begin()
         mouth.queue(Spoken("a long sentence", bytes(48000 * 10), b"", ()), 0)
@@ -195,7 +195,9 @@ def test_a_long_speech_ends_without_its_loudspeaker(audio: PortAudio) -> None:
 
 
 @pytest.mark.parametrize(("broken", "setting"), [("microphone", "source"), ("loudspeaker", "sink")])
-def test_a_device_that_cannot_be_opened_is_named(audio: PortAudio, broken: str, setting: str) -> None:
+def test_the_message_names_the_device_that_cannot_be_opened_and_its_setting(
+    audio: PortAudio, broken: str, setting: str
+) -> None:
     audio.broken = broken
 
     async def follow() -> None:
@@ -206,20 +208,20 @@ def test_a_device_that_cannot_be_opened_is_named(audio: PortAudio, broken: str, 
     assert broken == "microphone" or not audio.microphone.open
 
 
-def test_a_slow_agent_loses_the_oldest_sound(audio: PortAudio) -> None:
+def test_an_agent_that_reads_too_slowly_loses_the_oldest_sound(audio: PortAudio) -> None:
     async def follow() -> None:
         line = DeviceLine()
         for number in range(device_line.WAITING + 5):
             audio.microphone.take(bytes([number % 250, 0]))
-        await asyncio.sleep(0)  # one turn of the loop, no time: the blocks arrive by callbacks
+        await asyncio.sleep(0)  # let the loop run the callbacks that deliver the blocks; the clock does not advance
         assert (await anext(line.blocks()))[0] == 5
         line.close()
 
     run(follow)
 
 
-def test_this_machines_portaudio_answers() -> None:
-    """The real library: a machine without devices says so."""
+def test_the_real_portaudio_can_be_loaded() -> None:
+    """On a machine without audio devices, the error message refers to ``ravestate voice check``."""
     audio = device_line.portaudio()
     if len(audio.query_devices()) == 0:
 

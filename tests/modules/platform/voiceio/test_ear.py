@@ -1,4 +1,4 @@
-"""The ear: onsets, pauses and articulate speech in real sound, and nothing in noise."""
+"""The ear reports onsets, articulate speech and pauses in speech, and nothing in noise."""
 
 from collections.abc import Iterator
 
@@ -13,7 +13,7 @@ BLOCK = 640
 
 
 def hear(ear: Ear, pcm: bytes, begin: float = 0.0) -> Iterator[tuple[float, str]]:
-    """The events of a sound, with their times."""
+    """Yield the events of a sound, each with its time (seconds)."""
     for at in range(0, len(pcm), BLOCK):
         now = begin + (at + BLOCK) / 32000
         for event in ear.feed(pcm[at : at + BLOCK], now):
@@ -31,7 +31,7 @@ def test_speech_causes_the_events_onset_articulate_and_pause() -> None:
     assert turn is not None and ear.turn is None
     assert turn.start == pytest.approx(1.0, abs=0.12)
     assert pause - turn.end == pytest.approx(0.2, abs=0.05)
-    assert len(turn.sound) / 32000 > turn.end - turn.start + 0.3  # with a little silence on both sides
+    assert len(turn.sound) / 32000 > turn.end - turn.start + 0.3  # the sound includes a little silence at both ends
 
 
 def test_speech_after_a_pause_continues_the_turn() -> None:
@@ -42,7 +42,7 @@ def test_speech_after_a_pause_continues_the_turn() -> None:
     assert turn is not None and turn.start < 0.7 and turn.end > 2.4
 
 
-def test_another_person_who_does_not_wait_for_a_pause_has_a_turn_of_their_own() -> None:
+def test_another_person_who_speaks_without_a_pause_gets_a_separate_turn() -> None:
     first = spoken("I would like to go to the station.", "espeak:en-us")
     ear = Ear()
     pcm = track((0.5, first + spoken("No, that is much too far for us.", "espeak:en+f3")), length=5.0)
@@ -82,11 +82,11 @@ def test_two_turns_do_not_overlap() -> None:
     assert first.end < 2.0 < 2.9 < second.start
 
 
-def test_noise_is_no_onset() -> None:
+def test_noise_causes_no_events() -> None:
     assert list(hear(Ear(), noise(5.0, 3000))) == []
 
 
-def test_a_hum_is_not_articulate_at_once() -> None:
+def test_a_short_hum_is_not_articulate() -> None:
     time = np.arange(6400) / 16000
     hum = sum(np.sin(2 * np.pi * 110 * k * time) / k**2.5 for k in range(1, 8)) * 8000
     assert not is_articulate(hum[:512].astype("<i2"))

@@ -1,4 +1,4 @@
-"""The canceller removes the agent's own voice from the microphone's sound, and keeps the user's voice."""
+"""The echo canceller removes the agent's voice from the microphone's sound, but not the user's voice."""
 
 import numpy as np
 
@@ -7,7 +7,7 @@ from ravestate.modules.platform.voiceio.echo import FRAME, EchoCanceller
 
 
 def room(far: np.ndarray, decibels: float = -10.0, delay: float = 0.03) -> np.ndarray:
-    """Return the echo of a sound: delayed, softer, with two reflections."""
+    """Return the echo of a sound in a room: delayed, softer, and with two reflections."""
     out = np.zeros(len(far))
     for late, gain in ((0.0, 1.0), (0.012, 0.4), (0.031, 0.2)):
         shift = round((delay + late) * 16000)
@@ -32,11 +32,11 @@ def voice(*parts: tuple[float, str | bytes]) -> np.ndarray:
     return np.frombuffer(track(*parts, length=12.0), "<i2").astype(float)
 
 
-def test_the_echo_goes_and_the_user_stays() -> None:
+def test_the_canceller_removes_the_echo_and_keeps_the_users_voice() -> None:
     far = voice((0.2, "Once there was a robot. It lived in a museum full of old paintings."), (6.0, STORY))
     user = voice((9.0, spoken("What time is it?", "espeak:en-us")))
     out = cleaned(room(far) + user, far)
-    alone = slice(3 * 16000, 8 * 16000)  # after the filter has learnt the room
+    alone = slice(3 * 16000, 8 * 16000)  # the filter has learnt the room by then
     assert power(out[alone]) < power(room(far)[alone]) - 20
     both = slice(round(9.0 * 16000), round(9.8 * 16000))
     assert abs(power(out[both]) - power(user[both])) < 6
@@ -45,7 +45,7 @@ def test_the_echo_goes_and_the_user_stays() -> None:
 STORY = "One night it heard a strange noise in the hall, and it went to look for the reason."
 
 
-def test_without_sound_from_the_loudspeaker_nothing_is_lost() -> None:
+def test_without_sound_from_the_loudspeaker_the_users_voice_stays_unchanged() -> None:
     user = voice((1.0, "What time is it?"))
     out = cleaned(user, np.zeros(len(user)))
     assert abs(power(out) - power(user[: len(out)])) < 1

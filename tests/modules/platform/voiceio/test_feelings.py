@@ -1,4 +1,4 @@
-"""The agent's feelings change the manner of its speech for a while."""
+"""A feeling of the agent changes the prosody of its speech for a while."""
 
 from __future__ import annotations
 
@@ -17,7 +17,7 @@ from ravestate.modules.platform.voiceio.wav_line import WavLine
 from ravestate.testing import simulate
 
 
-def test_a_happy_agent_speaks_differently_for_a_while(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+def test_a_happy_agent_speaks_with_another_prosody_for_a_while(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr(opening, "Recogniser", Scripted(""))
     manners: list[Any] = []
     speak = Synthesiser.speak

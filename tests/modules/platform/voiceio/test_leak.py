@@ -1,4 +1,4 @@
-"""The loudspeaker's echo is hidden from the agent, but the speech of a user during the echo is not."""
+"""`Leak` hides the loudspeaker's echo from the agent, but not the speech of a user during the echo."""
 
 import numpy as np
 
@@ -17,7 +17,7 @@ def sound(*parts: tuple[float, str | bytes]) -> np.ndarray:
 
 
 def hidden(near: np.ndarray, far: np.ndarray) -> tuple[np.ndarray, Leak]:
-    """Return for each chunk whether it is hidden. Each chunk comes with one frame, without a canceller."""
+    """Return for each chunk of the microphone's sound whether `Leak` hides it, and the `Leak` itself."""
     leak, found, chunk = Leak(), list[bool](), 0
     for at in range(0, len(near) - FRAME, FRAME):
         leak.play(near[at : at + FRAME].astype("<i2"), far[at : at + FRAME].astype("<i2"))
@@ -31,7 +31,7 @@ def chunks(begin: float, end: float) -> slice:
     return slice(round(begin * 16000 / CHUNK), round(end * 16000 / CHUNK))
 
 
-def test_a_user_who_goes_on_while_the_agent_begins_is_hidden_for_a_moment_only() -> None:
+def test_a_user_who_continues_as_the_agent_begins_is_hidden_only_for_a_moment() -> None:
     for soft in (1.0, 0.1):
         user = soft * sound((0.9, spoken("The mountains, and my grandmother, and the old house near the sea.")))
         found, leak = hidden(user, sound((1.0, FAR)))
@@ -39,7 +39,7 @@ def test_a_user_who_goes_on_while_the_agent_begins_is_hidden_for_a_moment_only()
         assert not found[chunks(1.4, 3.0)].any()
 
 
-def test_a_line_that_was_silent_while_the_agent_spoke_has_no_echo() -> None:
+def test_a_microphone_that_was_silent_while_the_agent_spoke_has_no_echo() -> None:
     found, leak = hidden(sound((3.0, "Stop, that is enough.")), sound((0.5, FAR)))
     assert not leak.echoes and not leak.possible
     assert not found[chunks(3.0, 4.0)].any()
@@ -53,8 +53,8 @@ def test_an_echo_is_hidden_from_its_beginning() -> None:
         assert found[chunks(0.6, 3.5)].mean() > 0.95
 
 
-def test_an_echo_that_comes_later_is_found() -> None:
-    """The user takes the headphones off."""
+def test_an_echo_that_begins_later_is_noticed() -> None:
+    """For example, the user takes off the headphones."""
     far = sound((0.5, FAR))
     leak = Leak()
     for near in (np.zeros(len(far)), room(far)):
@@ -64,7 +64,7 @@ def test_an_echo_that_comes_later_is_found() -> None:
 
 
 def articulate(near: np.ndarray, far: np.ndarray) -> list[float]:
-    """Return the times at which an ear with a canceller is sure of the user's speech while the agent speaks."""
+    """Return the times of the event *articulate* of an ear with a canceller while the agent speaks (seconds)."""
     ear, found = Ear(canceller=EchoCanceller()), list[float]()
     a, b = (np.clip(each, -32768, 32767).astype("<i2").tobytes() for each in (near, far))
     for at in range(0, len(a) - 640, 640):
@@ -74,8 +74,8 @@ def articulate(near: np.ndarray, far: np.ndarray) -> list[float]:
     return found
 
 
-def test_a_user_who_goes_on_as_the_first_utterance_begins_is_heard_in_a_room_with_an_echo() -> None:
-    """The canceller has not learnt the room yet, and the user's sound must not teach it that the echo is loud."""
+def test_despite_an_echo_the_ear_hears_a_user_who_continues_as_the_agent_begins() -> None:
+    """The canceller does not know the room yet. It must not learn from the user's voice that the echo is loud."""
     for voice in ("piper", "espeak:en-us"):
         far, user = sound((0.5, spoken(FAR, voice))), sound((0.7, "Do you know a story about an old ship?"))
         for decibels in (-10.0, -20.0):

@@ -1,4 +1,4 @@
-"""An echo resembles the loudspeaker's sound, but another voice does not."""
+"""`likeness` finds an echo of the loudspeaker's sound, but does not take another voice for an echo."""
 
 import numpy as np
 import pytest
@@ -22,17 +22,17 @@ def test_an_echo_is_found_at_any_level_and_delay() -> None:
 
 
 @pytest.mark.parametrize("name", ["piper", "espeak:en-us"])
-def test_another_voice_is_no_echo_even_if_it_begins_at_the_same_time(name: str) -> None:
+def test_another_voice_is_not_an_echo_even_if_it_begins_at_the_same_time(name: str) -> None:
     far, near = sound((1.0, FAR_TEXT)), sound((1.0, spoken(NEAR_TEXT, name)))
     for end in range(FAR, FAR + 8000, 1280):
         assert likeness(near[end - NEAR : end], far[end - FAR : end])[0] < 25
 
 
-def test_silence_is_no_echo() -> None:
+def test_silence_is_not_an_echo() -> None:
     assert likeness(np.zeros(NEAR, np.float32), sound((0.1, FAR_TEXT))[:FAR])[0] < 25
 
 
-def test_the_strength_of_an_echo_is_known_also_while_the_user_speaks() -> None:
+def test_strength_measures_an_echo_even_while_the_user_speaks() -> None:
     far, user = sound((0.1, FAR_TEXT))[:FAR], sound((0.8, spoken(NEAR_TEXT, "espeak:en-us")))[FAR - NEAR : FAR]
     for decibels in (-5.0, -10.0):
         echo = 10 ** (decibels / 20) * np.concatenate([np.zeros(480, np.float32), far])[FAR - NEAR : FAR]

@@ -1,4 +1,4 @@
-"""Downloads of models: the files that a failure leaves behind."""
+"""Downloading models: the files that remain after a failure."""
 
 from pathlib import Path
 
@@ -9,7 +9,7 @@ from ravestate.errors import PlatformError
 from ravestate.modules.platform.voiceio import models
 
 
-def test_a_download_that_fails_leaves_only_the_files_that_it_has_fetched(
+def test_a_failed_download_leaves_a_folder_only_if_it_has_fetched_something(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     monkeypatch.setattr(models, "folders", lambda: (tmp_path,))

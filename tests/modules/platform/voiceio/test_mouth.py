@@ -1,4 +1,4 @@
-"""The mouth: growing text, the part that the user heard, and pauses of the speech."""
+"""The mouth: growing text, the part that the user has heard, and speech that is held."""
 
 import asyncio
 
@@ -15,7 +15,7 @@ TEXT = "one two three four five"
 
 
 def said(text: str = TEXT, per_word: float = 0.5, level: bytes = b"\0\x10") -> Spoken:
-    """A text whose words take half a second each."""
+    """Return a spoken text in which each word takes `per_word` seconds."""
     words = text.split()
     length = per_word * len(words)
     places = [(text.index(word), number * per_word) for number, word in enumerate(words)]
@@ -28,14 +28,14 @@ def said(text: str = TEXT, per_word: float = 0.5, level: bytes = b"\0\x10") -> S
 
 
 def mouth() -> Mouth:
-    return Mouth(WavLine(None), None)  # type: ignore[arg-type]  # synthesis is not part of these tests
+    return Mouth(WavLine(None), None)  # type: ignore[arg-type]  # these tests need no synthesiser
 
 
 @pytest.mark.parametrize(
     ("seconds", "heard"),
     [(0.1, ""), (0.2, ""), (0.31, "one"), (1.2, "one two"), (1.4, "one two three"), (2.4, TEXT), (9.0, TEXT)],
 )
-def test_the_heard_part_is_right_to_the_word(seconds: float, heard: str) -> None:
+def test_heard_returns_the_words_that_have_sounded_so_far(seconds: float, heard: str) -> None:
     async def listen() -> None:
         one = mouth()
         one.begin()
@@ -54,7 +54,7 @@ async def _wait(seconds: float) -> None:
 
 
 @pytest.mark.parametrize(("seconds", "heard"), [(0.09, ""), (0.11, "one,"), (1.09, "one,"), (1.11, "one, two.")])
-def test_the_pause_behind_a_word_is_no_part_of_it(seconds: float, heard: str) -> None:
+def test_a_word_counts_as_heard_before_the_pause_after_it(seconds: float, heard: str) -> None:
     text, word, pause = "one, two.", b"\0\x10" * round(0.2 * SECOND / 2), bytes(round(0.8 * SECOND))
 
     async def listen() -> None:
@@ -67,7 +67,7 @@ def test_the_pause_behind_a_word_is_no_part_of_it(seconds: float, heard: str) ->
     run(listen)
 
 
-def test_the_heard_parts_of_several_sentences_add_up() -> None:
+def test_heard_joins_the_sentences_of_an_utterance() -> None:
     async def listen() -> None:
         one = mouth()
         one.begin()
@@ -82,25 +82,25 @@ def test_the_heard_parts_of_several_sentences_add_up() -> None:
     run(listen)
 
 
-def test_held_speech_goes_on_at_the_word_that_was_cut() -> None:
+def test_released_speech_continues_with_the_word_that_was_cut() -> None:
     async def listen() -> None:
         one = mouth()
         one.begin()
         one.queue(said(), 0)
-        await _wait(1.3)  # within "three", of which half has sounded
+        await _wait(1.3)  # in the middle of "three"
         one.hold(1.3)
         await _wait(5.0)
         assert one.position == pytest.approx(1.3)
         assert one.heard(TEXT) == "one two three"
         one.release()
         await one.played_out()
-        assert asyncio.get_running_loop().time() == pytest.approx(1.3 + 5.0 + 1.5)  # "three" once more
+        assert asyncio.get_running_loop().time() == pytest.approx(1.3 + 5.0 + 1.5)  # it says "three" once more
         assert one.heard(TEXT) == TEXT
 
     run(listen)
 
 
-def test_a_sentence_that_is_queued_while_the_speech_is_held_waits() -> None:
+def test_a_sentence_queued_during_a_hold_waits_for_the_release() -> None:
     async def listen() -> None:
         one = mouth()
         one.begin()
@@ -117,7 +117,7 @@ def test_a_sentence_that_is_queued_while_the_speech_is_held_waits() -> None:
     run(listen)
 
 
-def test_no_part_of_an_utterance_counts_as_heard_before_it_sounds() -> None:
+def test_nothing_of_a_new_utterance_counts_as_heard_before_it_sounds() -> None:
     async def listen() -> None:
         one = mouth()
         one.begin()
@@ -133,7 +133,7 @@ def test_no_part_of_an_utterance_counts_as_heard_before_it_sounds() -> None:
     run(listen)
 
 
-def test_the_reference_of_the_echo_is_the_sound_that_plays() -> None:
+def test_reference_returns_the_sound_that_is_playing() -> None:
     async def listen() -> None:
         one = mouth()
         one.begin()
@@ -148,7 +148,7 @@ def test_the_reference_of_the_echo_is_the_sound_that_plays() -> None:
     run(listen)
 
 
-def test_a_growing_text_gives_its_sentences() -> None:
+def test_speech_yields_each_sentence_as_soon_as_it_is_complete() -> None:
     async def listen() -> None:
         speech, found = Speech(), list[tuple[int, str]]()
 

@@ -1,4 +1,4 @@
-"""Opening a conversation: the parts that a line needs, and their end."""
+"""Opening and closing a spoken conversation with all its parts, and its verdicts on what it hears."""
 
 import asyncio
 import gc
@@ -21,7 +21,7 @@ from ravestate.modules.platform.webio.line import PageLine
 
 
 def open_and_close(line: WavLine | PageLine, monkeypatch: pytest.MonkeyPatch) -> list[EchoCanceller]:
-    """Return the cancellers that a conversation made; all are freed."""
+    """Open and close a conversation. Return its echo cancellers, and check that they are freed."""
     made: list[EchoCanceller] = []
 
     def make() -> EchoCanceller:
@@ -39,15 +39,17 @@ def open_and_close(line: WavLine | PageLine, monkeypatch: pytest.MonkeyPatch) ->
     return made
 
 
-def test_the_echo_is_removed_where_the_line_does_not_do_it(monkeypatch: pytest.MonkeyPatch) -> None:
+def test_a_conversation_has_an_echo_canceller_if_its_line_has_none(monkeypatch: pytest.MonkeyPatch) -> None:
     assert len(open_and_close(WavLine(None), monkeypatch)) == 1
 
 
-def test_a_browser_removes_the_echo_itself(monkeypatch: pytest.MonkeyPatch) -> None:
+def test_a_conversation_on_a_page_has_no_echo_canceller_because_browsers_have_one(
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
     assert open_and_close(PageLine(), monkeypatch) == []
 
 
-def test_a_device_is_closed_again_if_a_later_part_is_missing(monkeypatch: pytest.MonkeyPatch) -> None:
+def test_the_line_is_closed_if_a_part_that_is_opened_later_is_missing(monkeypatch: pytest.MonkeyPatch) -> None:
     line = WavLine(None)
 
     def fail(*_: object) -> None:
@@ -89,8 +91,8 @@ def test_all_parts_are_closed_if_the_sound_cannot_be_written(monkeypatch: pytest
     assert closed == ["recogniser", "voice"]
 
 
-def test_recognition_of_an_unfinished_turn_is_cancelled_when_the_user_goes_on(monkeypatch: pytest.MonkeyPatch) -> None:
-    """The user speaks again while the words of the first part are recognised."""
+def test_recognition_of_a_turn_is_cancelled_when_the_user_continues_the_turn(monkeypatch: pytest.MonkeyPatch) -> None:
+    """The user continues while the recogniser works on the first part. `judge` is then cancelled."""
     scripted, begun, asked = Scripted("Hello."), threading.Event(), list[threading.Event]()
 
     def recognise(_: bytes, *, partial: bool = False, unwanted: threading.Event) -> Recognised:
@@ -114,7 +116,7 @@ def test_recognition_of_an_unfinished_turn_is_cancelled_when_the_user_goes_on(mo
     asyncio.run(talk())
 
 
-def test_the_model_of_melodies_stays_loaded(monkeypatch: pytest.MonkeyPatch) -> None:
+def test_two_conversations_share_the_loaded_model_for_melodies(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr(opening, "Recogniser", Scripted("Hello."))
 
     async def talk() -> None:
@@ -129,7 +131,7 @@ def test_the_model_of_melodies_stays_loaded(monkeypatch: pytest.MonkeyPatch) -> 
 
 
 class Devices(WavLine):
-    """A stand-in for the machine's devices, in place of PortAudio."""
+    """A stand-in for a line to audio devices. It keeps their names."""
 
     def __init__(self, *names: str) -> None:
         super().__init__(None)
@@ -184,8 +186,8 @@ def test_a_file_and_a_device_can_be_combined(
         assert len(sound.decode(tmp_path / "out.wav", 24000)) == 24000
 
 
-def test_a_recognition_that_fails_after_its_rule_was_cancelled_reports_nothing(monkeypatch: pytest.MonkeyPatch) -> None:
-    """At Ctrl-C, the process of the model is killed in the middle of its work."""
+def test_a_recognition_that_fails_after_its_rule_was_cancelled_is_not_reported(monkeypatch: pytest.MonkeyPatch) -> None:
+    """This happens at Ctrl-C, which kills the process of the model during its work."""
     failures: list[object] = []
     judging = threading.Event()
 
@@ -216,21 +218,21 @@ def test_a_recognition_that_fails_after_its_rule_was_cancelled_reports_nothing(m
 @pytest.mark.parametrize(
     ("text", "confidence", "length", "what"),
     [
-        ("Amen.", 0.5, 0.3, "false_alarm"),  # a hum, as a recogniser may write it
+        ("Amen.", 0.5, 0.3, "false_alarm"),  # a recogniser may take a hum for this word
         ("Mm-hmm.", 0.5, 0.5, "back_channel"),
         ("Stop.", 0.5, 0.3, "utterance"),
         ("Why?", 0.8, 0.3, "utterance"),
         ("the mountains and my grandmother", 0.5, 1.8, "utterance"),
     ],
 )
-def test_a_short_sound_interrupts_the_agent_only_if_its_words_are_clear_or_demand_it(
+def test_a_short_sound_interrupts_only_if_its_words_are_clear_or_mean_stop(
     text: str, confidence: float, length: float, what: str, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     async def talk() -> None:
         conversation = await opening.open_conversation(WavLine(None), Settings(**FAST["voiceio"]), pytest.fail)
         heard = Recognised(text, confidence)
         assert conversation.verdict(Turn(3.0, 3.0 + length, agent_spoke=True), heard)[0] == what
-        assert conversation.verdict(Turn(3.0, 3.0 + length), heard)[0] == "utterance"  # the agent is not interrupted
+        assert conversation.verdict(Turn(3.0, 3.0 + length), heard)[0] == "utterance"  # the agent was not speaking
         conversation.close()
 
     monkeypatch.setattr(opening, "Recogniser", Scripted("Hello."))

@@ -1,4 +1,4 @@
-"""The pitch shows whether two people speak; one person never counts as two."""
+"""The pitch of speech shows whether one or two people speak."""
 
 from pathlib import Path
 
@@ -11,7 +11,7 @@ from ravestate.modules.platform.voiceio.pitch import change, is_another, pitch, 
 
 
 @pytest.mark.parametrize("hertz", [90.0, 140.0, 220.0, 330.0])
-def test_a_tone_has_its_pitch(hertz: float) -> None:
+def test_pitch_returns_the_frequency_of_a_tone(hertz: float) -> None:
     time = np.arange(16000) / 16000
     tone = sum(np.sin(2 * np.pi * hertz * k * time) / k for k in range(1, 8)) * 4000
     assert pitch(tone.astype("<i2")) == pytest.approx(hertz, rel=0.03)
@@ -26,7 +26,7 @@ def voice(text: str, name: str) -> list[float | None]:
     return pitches(sound.samples(spoken(text, name)))
 
 
-def test_a_low_and_a_high_voice_are_two_people() -> None:
+def test_a_low_and_a_high_voice_count_as_two_people() -> None:
     low = [voice(text, "espeak:en-us") for text in ("I would like to go to", "Not today, thank you.")]
     high = voice("No, that is too far.", "espeak:en+f3")
     assert is_another(low[0], high) and is_another(high, low[1])
@@ -38,7 +38,7 @@ def test_two_parts_of_one_persons_speech_count_as_one_person() -> None:
     assert not is_another(pitches(pcm[: len(pcm) // 2]), pitches(pcm[len(pcm) // 2 :]))
 
 
-def test_another_person_is_noticed_within_speech() -> None:
+def test_change_finds_the_place_where_another_person_begins_to_speak() -> None:
     low = voice("I would like to go to the station.", "espeak:en-us")
     high = voice("No, that is much too far for us.", "espeak:en+f3")
     for first, second in ((low, high), (high, low)):
@@ -48,6 +48,6 @@ def test_another_person_is_noticed_within_speech() -> None:
 
 
 @pytest.mark.parametrize("file", sorted((PEOPLE / "librivox").glob("*.wav")), ids=lambda file: file.stem[-9:])
-def test_a_reader_stays_one_person_also_when_the_voice_moves(file: Path) -> None:
+def test_a_reader_whose_pitch_varies_counts_as_one_person(file: Path) -> None:
     found = pitches(sound.samples(sound.decode(file, 16000)), 512)
     assert all(change(found[at : at + 250]) is None for at in range(0, len(found), 60))

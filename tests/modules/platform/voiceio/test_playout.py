@@ -1,4 +1,4 @@
-"""The play-out clock counts what was played, without pauses."""
+"""The play-out clock counts the time in which sound was played, without the pauses."""
 
 from hypothesis import given
 from hypothesis import strategies as st
@@ -6,7 +6,7 @@ from hypothesis import strategies as st
 from ravestate.modules.platform.voiceio.playout import SECOND, PlayOut
 
 
-def test_queued_sound_plays_one_after_another() -> None:
+def test_queued_sounds_are_counted_one_after_another() -> None:
     out = PlayOut()
     out.play(bytes(SECOND), 1.0)
     out.play(bytes(SECOND), 1.0)
@@ -15,7 +15,7 @@ def test_queued_sound_plays_one_after_another() -> None:
     assert out.played(5.5) == 2.5
 
 
-def test_stopping_drops_the_rest_and_keeps_the_count() -> None:
+def test_stop_drops_the_remaining_sound_and_keeps_the_count() -> None:
     out = PlayOut()
     out.play(bytes(2 * SECOND), 0.0)
     out.stop(0.5)
@@ -26,7 +26,7 @@ def test_stopping_drops_the_rest_and_keeps_the_count() -> None:
 
 
 @given(st.lists(st.tuples(st.sampled_from(["play", "stop"]), st.floats(0, 0.5)), max_size=20))
-def test_the_count_never_runs_backwards(steps: list[tuple[str, float]]) -> None:
+def test_the_count_never_decreases(steps: list[tuple[str, float]]) -> None:
     out, now, before = PlayOut(), 0.0, 0.0
     for what, wait in steps:
         now += wait

@@ -1,4 +1,4 @@
-"""Limits for the shares that `benchmarks/questions/voice.py` measures in full."""
+"""A few conversations must stay within limits. `benchmarks/questions/voice.py` measures many more."""
 
 from __future__ import annotations
 
@@ -17,15 +17,15 @@ def voice(monkeypatch: pytest.MonkeyPatch) -> Any:
     return import_module("benchmarks.questions.voice")
 
 
-def test_pauses_are_not_taken_for_ends_nor_ends_for_pauses(voice: Any) -> None:
+def test_the_agent_rarely_confuses_pauses_with_ends_of_turns(voice: Any) -> None:
     cuts, missed, count = voice.ends_of_turns("tiny.en", 6)
     assert count == 6 and cuts <= 0.17 and missed <= 0.17
 
 
-def test_the_agents_own_voice_is_no_utterance(voice: Any) -> None:
+def test_the_agent_takes_no_echo_of_its_own_voice_for_an_utterance(voice: Any) -> None:
     assert voice.echoes(1) == 0
 
 
-def test_the_heard_text_of_an_interrupted_story_is_right_within_a_word(voice: Any) -> None:
+def test_the_heard_text_of_an_interrupted_story_is_wrong_by_at_most_one_word(voice: Any) -> None:
     delays, _, near = voice.interruptions(1)
     assert len(delays) == 1 and near == 1.0

@@ -1,4 +1,4 @@
-"""Recognition of people's speech by the real models, and the text for sounds other than speech."""
+"""Recognition of speech with real models, and the results for other sounds."""
 
 import runpy
 import threading
@@ -25,7 +25,7 @@ def transcriptions(file: Path) -> dict[str, str]:
     return found
 
 
-def test_people_are_understood() -> None:
+def test_recordings_of_people_are_recognised_with_few_errors() -> None:
     small = Recogniser(Settings(model="tiny.en"))
     wrong = total = 0
     for name, wanted in list(transcriptions(LIBRIVOX / "transcription").items())[:3]:
@@ -37,8 +37,8 @@ def test_people_are_understood() -> None:
     small.close()
 
 
-def test_a_short_sound_is_not_written_twice() -> None:
-    """In a short window, the model does not notice the end of the speech, and begins again."""
+def test_the_words_of_a_short_sound_are_not_repeated() -> None:
+    """In a short sound, the model may miss the end of the speech and begin again."""
     small = Recogniser(Settings(model="tiny.en"))
     for text in ("Dinner is ready.", "I have never been so happy.", "Can we start again?"):
         found = small.recognise(bytes(9600) + spoken(text) + bytes(6400))
@@ -47,7 +47,7 @@ def test_a_short_sound_is_not_written_twice() -> None:
     small.close()
 
 
-def test_a_last_word_that_cannot_end_a_sentence_keeps_some_probability() -> None:
+def test_the_last_word_is_a_candidate_even_if_it_cannot_end_a_sentence() -> None:
     small = Recogniser(Settings(model="tiny.en"))
     found = small.recognise(bytes(9600) + spoken("It is a photograph of my") + bytes(6400))
     assert found.last.get("my", 0.0) > 0.05
@@ -71,7 +71,7 @@ def test_repetitions_are_cut_off(words: str, at_limit: bool, kept: int) -> None:
     assert once(words.split(), at_limit=at_limit) == kept
 
 
-def test_a_grammar_understands_commands_and_refuses_other_words() -> None:
+def test_a_grammar_recognises_its_commands_and_no_other_words() -> None:
     commands = Recogniser(Settings(recogniser="grammar", model=str(PEOPLE / "goforward.gram")))
     forward = commands.recognise(sound.resample((PEOPLE / "goforward.raw").read_bytes(), 16000, 16000))
     assert forward.text == "go forward ten meters" and forward.confidence > 0.8
@@ -80,7 +80,7 @@ def test_a_grammar_understands_commands_and_refuses_other_words() -> None:
     commands.close()
 
 
-def test_a_missing_grammar_is_named(tmp_path: Path) -> None:
+def test_the_message_for_a_missing_grammar_has_its_name(tmp_path: Path) -> None:
     with pytest.raises(PlatformError, match=r"there is no file 'none\.gram'"):
         Recogniser(Settings(recogniser="grammar", model="none.gram"))
 
@@ -112,11 +112,13 @@ def test_the_message_about_a_missing_model_says_what_to_do() -> None:
         (" . ", 0.9, 0.0, ""),
     ],
 )
-def test_notes_about_sounds_are_no_words(text: str, confidence: float, no_speech: float, kept: str) -> None:
+def test_notes_about_sounds_and_unlikely_words_are_removed_from_the_text(
+    text: str, confidence: float, no_speech: float, kept: str
+) -> None:
     assert recogniser._cleaned(text, confidence, no_speech).text == kept
 
 
-def test_a_second_attempt_follows_a_crash(monkeypatch: pytest.MonkeyPatch) -> None:
+def test_after_a_crash_the_recogniser_tries_once_more(monkeypatch: pytest.MonkeyPatch) -> None:
     one = Recogniser(Settings(model="tiny.en"))
     attempts: list[bool] = []
 
@@ -134,8 +136,8 @@ def test_a_second_attempt_follows_a_crash(monkeypatch: pytest.MonkeyPatch) -> No
     one.close()
 
 
-def test_a_long_recording_is_understood_in_pieces(monkeypatch: pytest.MonkeyPatch) -> None:
-    """If a model reads each piece in time, it can read a recording of any length."""
+def test_a_long_recording_is_recognised_in_pieces(monkeypatch: pytest.MonkeyPatch) -> None:
+    """The time limit applies to each piece, so a recording may have any length."""
     small = Recogniser(Settings(model="tiny.en"))
     texts = list(transcriptions(LIBRIVOX / "transcription").items())[:5]
     texts += texts[:1]
@@ -156,7 +158,7 @@ def test_a_long_recording_is_understood_in_pieces(monkeypatch: pytest.MonkeyPatc
     small.close()
 
 
-def test_a_sound_of_maximum_length_fits_into_the_models_window() -> None:
+def test_a_turn_of_maximum_length_fits_into_the_input_of_the_model() -> None:
     small = Recogniser(Settings(model="tiny.en"))
     pcm = bytes(16000) + spoken("Dinner is ready.")
     found = small.recognise(pcm.ljust(round(32000 * recogniser.LONGEST), b"\0"))
@@ -164,8 +166,8 @@ def test_a_sound_of_maximum_length_fits_into_the_models_window() -> None:
     small.close()
 
 
-def test_unwanted_words_are_not_recognised(monkeypatch: pytest.MonkeyPatch) -> None:
-    """It recognises neither the remaining pieces, nor the sound a second time."""
+def test_recognition_stops_as_soon_as_its_result_is_unwanted(monkeypatch: pytest.MonkeyPatch) -> None:
+    """The recogniser then skips the remaining pieces and the second attempt."""
     one, unwanted, asked = Recogniser(Settings(model="tiny.en")), threading.Event(), list[bytes]()
 
     def request(_: object, data: bytes, **options: Any) -> Any:

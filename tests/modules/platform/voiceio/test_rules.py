@@ -1,4 +1,4 @@
-"""Spoken conversations between recordings and agents, in virtual time."""
+"""Spoken conversations of agents with recordings, in virtual time."""
 
 from __future__ import annotations
 
@@ -33,7 +33,7 @@ TELL = (0.5, "Please tell me a story.")
 
 
 def script(monkeypatch: pytest.MonkeyPatch, *texts: str | Exception, confidence: float = 0.9) -> Scripted:
-    """Recognise these texts, whatever the sound."""
+    """Replace the recogniser: it returns these texts, whatever the sound."""
     one = Scripted(*texts, confidence=confidence)
     monkeypatch.setattr(opening, "Recogniser", one)
     return one
@@ -48,15 +48,15 @@ def settings(**changed: Any) -> dict[str, dict[str, Any]]:
 
 
 def loud(file: Path, begin: float, end: float) -> bool:
-    """Return whether the loudspeaker sounds in this time."""
+    """Return whether the loudspeaker's file has sound between two times (seconds)."""
     with wave.open(str(file)) as out:
         sound = np.frombuffer(out.readframes(out.getnframes()), "<i2").astype(int)
     part = sound[round(begin * 24000) : round(end * 24000)]
     return bool(len(part)) and int(np.abs(part).max()) > 300
 
 
-def test_a_question_is_answered(tmp_path: Path) -> None:
-    """The real recogniser hears the user, and hears the agent in the loudspeaker's file."""
+def test_the_agent_hears_a_request_and_its_answer_can_be_heard(tmp_path: Path) -> None:
+    """The real recogniser transcribes the user, and then the agent in the loudspeaker's file."""
     heard: list[voiceio.Utterance] = []
     module = rs.Module("listener", requires=[voiceio])
 
@@ -78,7 +78,7 @@ def test_a_question_is_answered(tmp_path: Path) -> None:
 
 
 def test_the_same_recording_gives_the_same_conversation(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
-    """This holds even while another program uses the same voice, whose sound varies from sentence to sentence."""
+    """The sound of the voice depends on earlier sentences. But another user of the voice must not change it."""
     file = wav(tmp_path / "in.wav", track(TELL, (5.0, "No, stop."), length=8.0))
     other = Synthesiser(Settings(voice=FAST["voiceio"]["voice"]))
     runs: list[tuple[list[Said], str]] = []
@@ -92,12 +92,12 @@ def test_the_same_recording_gives_the_same_conversation(tmp_path: Path, monkeypa
 
 
 @pytest.mark.parametrize("name", ["piper", "espeak:en-us"])
-def test_a_user_who_goes_on_while_the_agent_begins_interrupts_it(
+def test_a_user_who_continues_as_the_agent_begins_interrupts_the_agent(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch, name: str
 ) -> None:
     heard = script(monkeypatch, "Tell me a story.", "About the sea, and my grandmother.")
     begin = spoken("Please tell me a story.")
-    rest = 0.5 + len(begin) / 32000 + 0.35  # the agent begins at this time
+    rest = 0.5 + len(begin) / 32000 + 0.35  # at this time, the agent begins to speak
     parts = (0.5, begin), (rest, "About the sea, the mountains, and my grandmother.")
     said = talk(
         wav(tmp_path / "in.wav", track(*parts, length=8.0)),
@@ -109,7 +109,7 @@ def test_a_user_who_goes_on_while_the_agent_begins_interrupts_it(
     story = next(one for one in said if one.speaker == "agent")
     assert story.cut and story.end < rest + 0.7
     assert [one.start for one in said] == sorted(one.start for one in said)
-    assert heard.heard[-1] > 2.2  # the whole rest of the sentence
+    assert heard.heard[-1] > 2.2  # the recogniser got the whole rest of the sentence
 
 
 def test_the_user_interrupts_and_the_agent_stops_at_once(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
@@ -152,7 +152,9 @@ def test_after_a_false_alarm_the_agent_resumes_where_it_stopped(
     assert not loud(tmp_path / "out.wav", 5.4, 6.2) and loud(tmp_path / "out.wav", 7.2, 9.0)
 
 
-def test_a_long_interruption_stops_the_agent_before_its_end(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+def test_a_long_interruption_stops_the_agent_before_the_user_has_finished(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
     script(monkeypatch, "Tell me a story.", "no")
     file = wav(
         tmp_path / "in.wav",
@@ -170,7 +172,9 @@ def test_a_long_interruption_stops_the_agent_before_its_end(tmp_path: Path, monk
     assert len(stopped) == 1 and 6.0 < stopped[0] < 6.5
 
 
-def test_the_heard_words_are_reported_after_each_output(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+def test_after_each_output_the_slot_heard_gets_the_words_that_the_user_heard(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
     script(monkeypatch, "Tell me a story.", "Stop.")
     heard: list[str] = []
     module = rs.Module("listener", requires=[rawio])
@@ -187,7 +191,7 @@ def test_the_heard_words_are_reported_after_each_output(tmp_path: Path, monkeypa
     assert voiceio.heard is rawio.heard
 
 
-def test_an_utterance_recognised_with_low_confidence_makes_the_agent_ask_back(
+def test_the_agent_asks_back_after_an_utterance_with_low_confidence(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     script(monkeypatch, "Tell my a storage", confidence=0.2)
@@ -197,7 +201,7 @@ def test_an_utterance_recognised_with_low_confidence_makes_the_agent_ask_back(
 
 
 def teller(pieces: tuple[str, ...], *outputs: str) -> rs.Module:
-    """An agent that says pieces without the flag ``rawio.speaking``, and then writes these utterances."""
+    """Return a module that emits pieces without the flag ``rawio.speaking``, and then writes the outputs."""
     module = rs.Module("teller", requires=[rawio])
 
     @module.rule(when=rawio.input.changed, writes=rawio.output, emits=rawio.piece)
@@ -220,21 +224,21 @@ def teller(pieces: tuple[str, ...], *outputs: str) -> rs.Module:
         (("It was a ",), ("Sorry, I forgot it.",), ["It was a", "Sorry, I forgot it."]),
     ],
 )
-def test_pieces_are_spoken_once_and_another_text_follows_them(
+def test_pieces_are_spoken_once_and_a_different_output_is_spoken_after_them(
     pieces: tuple[str, ...],
     outputs: tuple[str, ...],
     spoken: list[str],
     tmp_path: Path,
     monkeypatch: pytest.MonkeyPatch,
 ) -> None:
-    """This holds even if the pieces end in a space that the utterance lacks, or without the flag ``rawio.speaking``."""
+    """The pieces may end in a space that the output lacks. The rule does not set the flag ``rawio.speaking``."""
     script(monkeypatch, "Tell me a story.")
     file = wav(tmp_path / "in.wav", track(TELL, length=3.0))
     said = talk(file, None, teller(pieces, *outputs), settings=settings(filler_after=0))
     assert sides(said, "agent") == spoken
 
 
-def test_a_filler_is_spoken_when_the_answer_takes_long(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+def test_a_filler_is_spoken_if_the_answer_takes_long(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     script(monkeypatch, "Think about it, please.")
     file = wav(tmp_path / "in.wav", track((0.5, "Think about it, please."), length=3.0))
     said = talk(file, None, storyteller(slow=3.0), settings=FAST)
@@ -244,17 +248,15 @@ def test_a_filler_is_spoken_when_the_answer_takes_long(tmp_path: Path, monkeypat
     assert sides(talk(file, None, storyteller(slow=0.5), settings=FAST), "agent") == ["Good night."]
 
 
-def test_a_pause_within_a_sentence_is_no_end(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+def test_a_pause_within_a_sentence_does_not_end_the_turn(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     scripted = script(monkeypatch, "I would like to hear a", "I would like to hear a good story.")
     file = wav(tmp_path / "in.wav", track((0.5, "I would like to hear a"), (2.4, "good story."), length=4.0))
     said = talk(file, None, storyteller(), settings=FAST)
     assert sides(said, "user") == ["I would like to hear a good story."]
-    assert scripted.heard[1] > scripted.heard[0] + 1.0  # the second time, the whole turn was heard
+    assert scripted.heard[1] > scripted.heard[0] + 1.0  # the second time, the recogniser got the whole turn
 
 
-def test_the_words_of_two_people_are_not_joined_to_one_sentence(
-    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
-) -> None:
+def test_the_words_of_two_people_are_two_utterances(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     script(monkeypatch, "I would like to go to the", "I would like to go to the", "No, that is much too far.")
     first, second = (
         spoken("I would like to go to the", "espeak:en-us"),
@@ -265,7 +267,7 @@ def test_the_words_of_two_people_are_not_joined_to_one_sentence(
     assert len(said) == 2 and said[0].end < said[1].start
 
 
-def test_captions_show_the_words_so_far(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+def test_the_signal_hearing_carries_the_words_so_far(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     script(monkeypatch, "I", "I would", "I would like a story.")
     seen: list[str] = []
     module = rs.Module("listener", requires=[rawio])
@@ -289,7 +291,7 @@ def test_in_half_duplex_the_agent_hears_nothing_while_it_speaks(
     assert sides(said, "agent") == [WHOLE] and len(scripted.heard) == 1
 
 
-def test_a_recogniser_that_fails_makes_the_agent_ask_back(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+def test_the_agent_asks_back_after_a_failure_of_the_recogniser(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     script(monkeypatch, PlatformError("whisper did not answer"), "Tell me a story.")
     file = wav(tmp_path / "in.wav", track(TELL, (5.0, TELL[1]), length=8.0))
     said = talk(file, None, storyteller(), settings=FAST)
@@ -297,7 +299,7 @@ def test_a_recogniser_that_fails_makes_the_agent_ask_back(tmp_path: Path, monkey
     assert any(word in ask for word in ("catch", "again", "repeat")) and story == WHOLE
 
 
-def test_silence_and_noise_are_no_turn(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+def test_noise_is_not_recognised_as_a_turn(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     scripted = script(monkeypatch, "Hello?")
     assert talk(wav(tmp_path / "in.wav", noise(5.0, 2000)), None, storyteller(), settings=FAST) == []
     assert scripted.heard == []
@@ -319,8 +321,10 @@ def test_the_agent_is_not_bored_while_it_speaks(tmp_path: Path, monkeypatch: pyt
     assert bored and not any(story.start < time < story.end + 2.9 for time in bored)
 
 
-def test_a_platforms_line_is_used_and_no_device_is_opened(monkeypatch: pytest.MonkeyPatch, tmp_path: Path) -> None:
-    """A platform with many users, such as the web page, brings a line for each of them."""
+def test_if_a_platform_serves_users_voiceio_uses_its_line_and_opens_no_device(
+    monkeypatch: pytest.MonkeyPatch, tmp_path: Path
+) -> None:
+    """A platform with many users, such as the web page, provides a line for each user."""
     from ravestate.modules.platform.voiceio.wav_line import WavLine
     from ravestate.testing import simulate
 
@@ -340,8 +344,10 @@ def test_a_platforms_line_is_used_and_no_device_is_opened(monkeypatch: pytest.Mo
         assert sim.read(voiceio.conversation) is None
 
 
-def test_a_line_that_comes_at_once_is_opened_once(monkeypatch: pytest.MonkeyPatch, tmp_path: Path) -> None:
-    """A page provides its line at the moment when its context begins."""
+def test_a_line_that_a_platform_provides_at_once_is_opened_only_once(
+    monkeypatch: pytest.MonkeyPatch, tmp_path: Path
+) -> None:
+    """A page may provide its line as soon as the context starts."""
 
     from modules.platform.voiceio.test_wav_line import run
     from ravestate.modules.platform.voiceio.wav_line import WavLine
@@ -367,7 +373,7 @@ def test_a_line_that_comes_at_once_is_opened_once(monkeypatch: pytest.MonkeyPatc
 
 
 def test_an_output_that_cannot_be_written_ends_the_agent(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
-    """The agent ends at once. If the file becomes unwritable later, the agent ends with the conversation."""
+    """The agent ends at once, or at the end of the conversation if the file has become unwritable by then."""
     script(monkeypatch, "Hello.")
     file, out = wav(tmp_path / "in.wav", track(TELL, length=2.0)), tmp_path / "out.wav"
     with pytest.raises(PlatformError, match=r"ends in \.wav"):
@@ -382,13 +388,13 @@ def test_an_output_that_cannot_be_written_ends_the_agent(tmp_path: Path, monkeyp
         talk(file, out, storyteller(), settings=FAST, show=lose)
 
 
-def test_the_module_offers_the_names_in_its_readme() -> None:
+def test_the_module_exports_the_names_in_its_readme() -> None:
     readme = (Path(voiceio.__file__).parent / "README.md").read_text(encoding="utf-8")
     names = re.findall(r"^\| `voiceio\.(\w+)", readme, re.MULTILINE)
     assert len(names) > 10 and set(names) <= set(voiceio.__all__)
 
 
-def test_a_missing_model_ends_the_agent_with_the_remedy(tmp_path: Path) -> None:
+def test_a_missing_model_ends_the_agent_with_advice(tmp_path: Path) -> None:
     file = wav(tmp_path / "in.wav", spoken("Hello."))
     with pytest.raises(PlatformError, match="ravestate voice get huge"):
         talk(file, None, storyteller(), settings=settings(model="huge"))

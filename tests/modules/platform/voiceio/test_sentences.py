@@ -9,22 +9,22 @@ def test_a_sentence_is_complete_when_another_begins() -> None:
     assert list(sentences("Once there was a robot. It", whole=True)) == [(0, "Once there was a robot."), (23, " It")]
 
 
-def test_a_short_beginning_is_spoken_with_the_next_sentence() -> None:
+def test_a_short_first_sentence_is_joined_with_the_next_sentence() -> None:
     assert list(sentences("Oh. I see what you mean. Go on", whole=False)) == [(0, "Oh. I see what you mean.")]
 
 
-def test_an_abbreviation_ends_no_sentence() -> None:
+def test_an_abbreviation_does_not_end_a_sentence() -> None:
     assert list(sentences("I have met Dr. Miller yesterday. And", whole=False)) == [
         (0, "I have met Dr. Miller yesterday.")
     ]
 
 
-def test_the_sentences_together_are_the_whole_text() -> None:
+def test_the_joined_sentences_equal_the_whole_text() -> None:
     text = "One thing is sure! What else?\nA list: a, b. And an end"
     assert "".join(sentence for _, sentence in sentences(text, whole=True)) == text
 
 
-def test_emoji_and_marks_become_spaces_of_the_same_length() -> None:
+def test_each_emoji_and_each_formatting_mark_becomes_a_space() -> None:
     assert speakable("*Hi* there 😊!") == " Hi  there  !"
     assert speakable("😊 …") == ""
 
@@ -35,7 +35,7 @@ def test_chinese_and_japanese_sentences_end_without_a_space() -> None:
         "从前有一个机器人，它住在博物馆里。",
         "有一天晚上，它听到了奇怪的声音！",
     ]
-    assert list(sentences("这是一个很长很长的句子吗？", whole=False)) == []  # another mark may follow
+    assert list(sentences("这是一个很长很长的句子吗？", whole=False)) == []  # a closing quotation mark may follow
     quoted = "「昔々、ロボットがいたそうです。」と彼女は静かに言いました。次"
     assert [sentence for _, sentence in sentences(quoted, whole=False)] == [
         "「昔々、ロボットがいたそうです。」",

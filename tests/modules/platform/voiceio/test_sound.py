@@ -1,4 +1,4 @@
-"""Sounds are read from many formats, resampled, and written; bad files are refused with a reason."""
+"""Sounds can be read, resampled, written and cut into pieces. Bad files are refused with a reason."""
 
 from pathlib import Path
 
@@ -32,7 +32,7 @@ def test_an_ogg_file_can_be_written_and_read(tmp_path: Path) -> None:
     assert np.argmax(spectrum) * 16000 / (len(back) / 2) == pytest.approx(440, abs=4)
 
 
-def test_stereo_is_mixed(tmp_path: Path) -> None:
+def test_stereo_sound_is_mixed_to_mono(tmp_path: Path) -> None:
     import wave
 
     left = sound.samples(tone(16000)).reshape(-1, 1)
@@ -44,7 +44,7 @@ def test_stereo_is_mixed(tmp_path: Path) -> None:
     assert sound.seconds(sound.decode(tmp_path / "stereo.wav", 16000), 16000) == pytest.approx(0.5, abs=0.01)
 
 
-def test_a_file_that_is_cut_short_still_has_its_beginning(tmp_path: Path) -> None:
+def test_the_beginning_of_a_truncated_file_can_be_read(tmp_path: Path) -> None:
     encoded = sound.encode_ogg(tone(24000, length=4.0), 24000)
     assert 0.5 < sound.seconds(sound.decode(encoded[: len(encoded) // 2], 16000), 16000) < 4.0
 
@@ -69,9 +69,9 @@ def test_a_folder_that_cannot_be_written_is_refused(tmp_path: Path) -> None:
         sound.write_wav(tmp_path / "none" / "out.wav", bytes(100), 16000)
 
 
-def test_a_long_sound_is_cut_in_quiet_moments() -> None:
+def test_a_long_sound_is_cut_at_quiet_moments() -> None:
     loud = np.random.default_rng(0).normal(0, 3000, 16000 * 70).astype("<i2")
-    for second in (10, 24, 45):  # the first one is too early for a cut
+    for second in (10, 24, 45):  # quiet moments; a cut at the first one would be too early
         loud[16000 * second : 16000 * second + 6400] //= 50
     found = list(sound.pieces(loud.tobytes(), 16000, 28.0))
     assert b"".join(found) == loud.tobytes()

@@ -1,4 +1,4 @@
-"""Voices: sound with the times of its words, prosody, and messages about missing parts."""
+"""Voices: sound and the times of its words, prosody, and messages about missing voices."""
 
 import itertools
 
@@ -13,7 +13,7 @@ TEXT = "Once upon a time there was a robot with 25 friends."
 
 
 @pytest.mark.parametrize("name", ["espeak", "piper"])
-def test_words_have_times_in_the_sound(name: str) -> None:
+def test_each_word_has_a_time_in_the_sound(name: str) -> None:
     spoken = voice(name).speak(TEXT)
     length = len(spoken.sound) / 48000
     assert 2.0 < length < 6.0
@@ -22,7 +22,7 @@ def test_words_have_times_in_the_sound(name: str) -> None:
     times = [word.time for word in spoken.words]
     assert times == sorted(times) and times[0] < 0.3 and length - times[-1] > 0.2
     assert all(later - earlier > 0.03 for earlier, later in itertools.pairwise(times))
-    assert times[9] + 0.3 < times[10]  # a number takes long
+    assert times[9] + 0.3 < times[10]  # a spoken number takes long
 
 
 @pytest.mark.parametrize("name", ["espeak", "piper"])
@@ -36,7 +36,7 @@ def test_prosody_changes_the_pitch_of_espeak() -> None:
     assert low != high
 
 
-def test_a_voice_that_is_missing_is_named() -> None:
+def test_the_message_for_a_missing_voice_has_its_name() -> None:
     with pytest.raises(PlatformError, match="has no voice 'en_US-nobody'"):
         Synthesiser(Settings(voice="en_US-nobody"))
     nobody = Synthesiser(Settings(voice="espeak:xx-none"))
@@ -45,7 +45,7 @@ def test_a_voice_that_is_missing_is_named() -> None:
     nobody.close()
 
 
-def test_without_piper_espeak_speaks(monkeypatch: pytest.MonkeyPatch) -> None:
+def test_without_piper_the_default_voice_is_espeak(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr("ravestate.modules.platform.voiceio.synthesiser.piper_python", lambda _: None)
     light = Synthesiser(Settings(voice=""))
     assert light.name == "espeak:en"
@@ -54,7 +54,7 @@ def test_without_piper_espeak_speaks(monkeypatch: pytest.MonkeyPatch) -> None:
         Synthesiser(Settings(voice="piper"))
 
 
-def test_a_voice_is_found_by_name_and_by_file() -> None:
+def test_a_piper_voice_is_found_by_name_and_by_file() -> None:
     file = models.piper_voice("en_US-joe-medium")
     assert file is not None and models.piper_voice(str(file)) == file == models.piper_voice("")
     assert models.piper_voice("none") is None

@@ -1,4 +1,4 @@
-"""The end of a turn by its words, back-channels, and the agent's own words."""
+"""Recognising the end of a turn, back-channels, and echoes of the agent's own words."""
 
 import pytest
 
@@ -30,7 +30,9 @@ SETTINGS = Settings(pause=0.2, doubtful_pause=0.7, longest_pause=1.4)
         ("", 0.9, 0.2),
     ],
 )
-def test_words_and_melody_decide_how_long_a_pause_may_be(text: str, complete: float | None, silence: float) -> None:
+def test_words_and_melody_decide_how_much_silence_ends_a_turn(
+    text: str, complete: float | None, silence: float
+) -> None:
     assert wanted_silence(text, complete, SETTINGS) == silence
 
 
@@ -44,18 +46,18 @@ def test_words_and_melody_decide_how_long_a_pause_may_be(text: str, complete: fl
         ("I am looking for a", {"a": 0.99}, 1.4),
     ],
 )
-def test_alternatives_for_the_last_word_change_how_long_a_pause_may_be(
+def test_alternatives_for_the_last_word_change_how_much_silence_ends_a_turn(
     text: str, last: dict[str, float], silence: float
 ) -> None:
     assert wanted_silence(text, 0.9, SETTINGS, last) == silence
 
 
-def test_no_pause_is_longer_than_the_setting() -> None:
+def test_no_wanted_silence_is_longer_than_the_setting() -> None:
     quick = Settings(longest_pause=0.5)
     assert max(wanted_silence(text, 0.1, quick) for text in ("and the", "Yes.", "I think that")) == 0.5
 
 
-def test_german_has_words_of_its_own() -> None:
+def test_completeness_and_back_channels_are_recognised_in_german() -> None:
     assert completeness("Ich möchte in die", "de") == "open"
     assert completeness("Ich möchte nach Hause.", "de") == "complete"
     assert is_back_channel("Ja, genau.", "de") and not is_back_channel("Nein.", "de")
@@ -85,19 +87,19 @@ def test_a_sign_of_listening_is_a_back_channel(text: str) -> None:
 @pytest.mark.parametrize(
     "text", ["No.", "Stop.", "Yes, but why?", "Wait", "How?", "", "Okay, now something else please"]
 )
-def test_an_interruption_is_no_back_channel(text: str) -> None:
+def test_an_interruption_is_not_a_back_channel(text: str) -> None:
     assert not is_back_channel(text)
 
 
-def test_the_agents_own_words_are_recognised() -> None:
+def test_is_echo_recognises_the_agents_own_words() -> None:
     own = "Once there was a robot. It lived in a museum."
     assert is_echo("It lived in a museum.", own)
     assert is_echo("lived in the museum", own + " It lived in a")
     assert not is_echo("Where did it live?", own)
-    assert not is_echo("museum", own)  # a single word may well be a question
+    assert not is_echo("museum", own)  # the user may ask a question with this one word
 
 
-def test_the_melody_of_a_complete_sentence_differs() -> None:
+def test_the_melody_distinguishes_complete_sentences_from_unfinished_ones() -> None:
     file = smart_turn()
     assert file is not None
     melody = Melody(file)

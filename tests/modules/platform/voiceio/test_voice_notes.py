@@ -1,4 +1,4 @@
-"""Voice notes: a text becomes an OGG file, and its words come back."""
+"""Voice notes: a text becomes an OGG file, and the recogniser finds the same words in it."""
 
 from pathlib import Path
 
@@ -12,7 +12,7 @@ TINY = voiceio.Settings(model="tiny.en", voice="piper")
 TEXT = "It was a bright cold day in April, and the clocks were striking."
 
 
-def test_the_words_of_a_synthesised_note_are_understood(tmp_path: Path) -> None:
+def test_the_words_of_a_synthesised_note_are_recognised(tmp_path: Path) -> None:
     note = voiceio.synthesise(TEXT, TINY)
     assert note[:4] == b"OggS"
     found = voiceio.transcribe(note, TINY)

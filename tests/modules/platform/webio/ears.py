@@ -1,4 +1,4 @@
-"""An agent that hears loud and quiet and answers with tones, for tests of the sound on a page."""
+"""An agent for tests of the sound on a page. It distinguishes loud from quiet, and answers with tones."""
 
 from __future__ import annotations
 
@@ -9,13 +9,13 @@ import ravestate as rs
 from ravestate.modules import rawio
 
 LOUD = 0.02
-"""The minimum level of a loud block (1 is the maximum)."""
+"""A block of sound with at least this level is loud. The maximum level is 1."""
 
 PAUSE = 0.4
-"""Seconds of quiet that end an utterance."""
+"""An utterance ends after this many seconds of quiet."""
 
 WORD = 0.3
-"""Seconds of tone for each word of the agent."""
+"""The agent plays a tone of this length for each word (seconds)."""
 
 ears = rs.Module("ears", requires=(rawio,))
 level = ears.slot("level", 0.0)
@@ -35,7 +35,7 @@ def tone(seconds: float, rate: int = rawio.OUT_RATE) -> bytes:
 
 
 def babble(seconds: float, rate: int = rawio.IN_RATE) -> bytes:
-    """Return a sound like a voice (a hoarse tone in syllables), which a browser does not take for noise."""
+    """Return a sound like a voice: a hoarse tone in syllables. A browser does not take it for noise."""
     samples = array.array("h")
     for n in range(round(seconds * rate)):
         time = n / rate
@@ -53,7 +53,7 @@ def babble(seconds: float, rate: int = rawio.IN_RATE) -> bytes:
     background=True,
 )
 async def listen(ctx: rs.RuleContext) -> None:
-    """Turn each loud stretch into an utterance with its length."""
+    """Turn each loud period into an input. During it, report its length so far."""
     line = ctx.payload(rawio.sound.changed)
     loud = quiet = told = 0.0
     async for block in line.blocks():
@@ -74,7 +74,7 @@ async def listen(ctx: rs.RuleContext) -> None:
 
 @ears.rule(when=rawio.output.changed.max_age(None).detached(), reads=rawio.sound, writes=rawio.heard, background=True)
 async def speak(ctx: rs.RuleContext) -> None:
-    """Play a tone for each word, and note the words that were heard, even if the sound is cut short."""
+    """Play a tone for each word. Then report the words that the visitor heard, even if the sound was cut short."""
     line, words = ctx[rawio.sound], ctx.payload(rawio.output.changed).split()
     if line is None:
         return
@@ -107,5 +107,5 @@ SAGA = "I heard a sound, and that reminds me of" + 30 * " far" + " hills."
 
 @saga.rule(when=rawio.input.changed, writes=rawio.output)
 async def tell_at_length(ctx: rs.RuleContext) -> None:
-    """Say something so long that the visitor can interrupt."""
+    """Say something long, so that the visitor can interrupt the agent."""
     ctx[rawio.output] = SAGA

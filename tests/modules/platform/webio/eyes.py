@@ -1,4 +1,4 @@
-"""An agent that takes pictures of the visitor's camera, for tests of the camera on a page."""
+"""An agent for tests of the camera on a page. It asks for pictures of the visitor's camera."""
 
 from __future__ import annotations
 
@@ -6,18 +6,18 @@ import ravestate as rs
 from ravestate.modules import rawio
 
 JPEG = b"\xff\xd8\xff\xe0 a picture"
-"""The beginning of a JPEG."""
+"""Data that begins like a JPEG picture."""
 
 eyes = rs.Module("eyes", requires=(rawio,))
 glance = eyes.signal("glance", input=True)
-"""Take a picture."""
+"""The agent asks for a picture when this signal is raised."""
 pictures: rs.Slot[tuple[bytes | None, ...]] = eyes.slot("pictures", ())
-"""The pictures that the agent has taken; None for a camera that was off."""
+"""The pictures that the agent has received; None if the camera went off meanwhile."""
 
 
 @eyes.rule(when=glance.max_age(None), reads=rawio.camera, writes=pictures, detached=True, background=True)
 async def look(ctx: rs.RuleContext) -> rs.Resign | None:
-    """Take one picture, and show two faces in it."""
+    """Ask for one picture, and mark two faces in it."""
     camera = ctx[rawio.camera]
     if camera is None:
         return rs.Resign("the camera is off")

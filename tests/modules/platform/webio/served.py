@@ -1,4 +1,4 @@
-"""An agent's page in a separate process, on a real port, with visitors that come over the network."""
+"""An agent's page in a separate process, on a real port. Visitors come over the network."""
 
 import json
 import os
@@ -17,11 +17,11 @@ HERE = Path(__file__)
 
 
 class Served:
-    """``with Served(port=0) as served``: an agent that says again what it hears.
+    """An agent that repeats each input, served by a separate process: ``with Served() as served``.
 
     Args:
-        patience: The seconds that the server waits for silent clients, and for clients that do not read. Keep it short for
-            quick tests.
+        patience: The time for which the server waits for silent clients and for clients that do not read (seconds). Keep
+            it short for quick tests.
         settings: The settings of ``webio``.
     """
 
@@ -29,7 +29,7 @@ class Served:
         self._patience = patience
         self._settings = {"port": 0, **settings}
         self.errors = ""
-        """The output on the error stream, once the process has ended."""
+        """The error output of the process, after its end."""
 
     def __enter__(self) -> "Served":
         self.process = subprocess.Popen(
@@ -51,7 +51,7 @@ class Served:
         self.end()
 
     def end(self, how: signal.Signals = signal.SIGINT) -> int:
-        """End the process cleanly, and return its exit code."""
+        """End the process with a signal, and return its exit code."""
         if self.process.poll() is None:
             self.process.send_signal(how)
             try:
@@ -67,7 +67,7 @@ class Served:
         return connect(f"ws://{self.host}/ws", ping_interval=None, compression=None, **options)
 
     def peak(self) -> int:
-        """Return the maximum memory of the process so far (bytes). Linux only."""
+        """Return the peak memory of the process so far (bytes). Linux only."""
         status = Path(f"/proc/{self.process.pid}/status").read_text(encoding="ascii")
         found = re.search(r"VmHWM:\s+(\d+) kB", status)
         assert found is not None
@@ -85,7 +85,7 @@ async def hello(socket: ClientConnection, **fields: Any) -> dict[str, Any]:
 
 
 async def talk(socket: ClientConnection, said: Sequence[str]) -> None:
-    """Say something, and check that each answer is right."""
+    """Say some texts, and check that the agent repeats each of them."""
     for text in said:
         await socket.send(json.dumps({"type": "say", "id": text.replace(" ", "-"), "text": text}))
         answered = ""

@@ -1,4 +1,4 @@
-"""Hostile and broken clients: their cost is bounded, and other clients do not notice them."""
+"""Hostile and broken clients: they cost the server little, and other visitors do not notice them."""
 
 import asyncio
 import contextlib
@@ -21,7 +21,7 @@ ELSEWHERE = ("127.0.0.2", 0)  # another address of this machine
 
 @pytest.fixture(autouse=True)
 def _many_files() -> Iterator[None]:
-    """Allow this process more open files than usual, for the hostile clients."""
+    """Allow this process more open files than usual, because each hostile client needs one."""
     soft, hard = resource.getrlimit(resource.RLIMIT_NOFILE)
     resource.setrlimit(resource.RLIMIT_NOFILE, (max(soft, min(hard, 4096)), hard))
     yield
@@ -30,21 +30,21 @@ def _many_files() -> Iterator[None]:
 
 @contextlib.asynccontextmanager
 async def unharmed(served: Served, megabytes: int) -> AsyncGenerator[None]:
-    """Within the ``with`` block, a visitor talks all the time. Memory must not grow by more than the given amount."""
+    """Let a visitor talk during the ``with`` block. The server's memory must grow by less than `megabytes`."""
     async with served.connect(local_addr=ELSEWHERE) as visit:
         await hello(visit)
         await talk(visit, ["before"])
         before = served.peak()
         over = asyncio.Event()
 
-        async def go_on() -> int:
+        async def keep_talking() -> int:
             number = 0
             while not over.is_set():
                 await talk(visit, [f"meanwhile {number}"])
                 number += 1
             return number
 
-        talking = asyncio.create_task(go_on())
+        talking = asyncio.create_task(keep_talking())
         yield
         over.set()
         assert await talking > 1
@@ -85,7 +85,7 @@ async def test_a_message_of_ten_megabytes_in_small_pieces_is_refused() -> None:
 
 
 @on_loop
-async def test_a_thousand_connections_that_say_nothing_are_bounded() -> None:
+async def test_a_limit_bounds_the_connections_that_send_no_request() -> None:
     with Served(per_address=100) as served:
         async with unharmed(served, megabytes=16):
             open_before = served.files()
@@ -102,7 +102,7 @@ async def test_a_thousand_connections_that_say_nothing_are_bounded() -> None:
 
 
 @on_loop
-async def test_a_thousand_websockets_that_say_no_hello_are_bounded() -> None:
+async def test_a_limit_bounds_the_websockets_that_send_no_hello() -> None:
     with Served(patience=2.0, per_address=100) as served:
         async with unharmed(served, megabytes=24):
             open_before = served.files()
@@ -110,7 +110,7 @@ async def test_a_thousand_websockets_that_say_no_hello_are_bounded() -> None:
             for _ in range(1000):
                 with contextlib.suppress(InvalidStatus, InvalidMessage, OSError):
                     sockets.append(await served.connect())
-                assert served.files() - open_before <= 101  # one may be on its way out
+                assert served.files() - open_before <= 101  # one more may be closing
             assert len(sockets) >= 50
             for one in sockets:
                 assert json.loads(await one.recv())["code"] == "silent"
@@ -120,17 +120,17 @@ async def test_a_thousand_websockets_that_say_no_hello_are_bounded() -> None:
 
 
 @on_loop
-async def test_the_server_does_not_wait_for_a_client_without_a_request() -> None:
+async def test_the_server_drops_a_client_whose_request_never_ends() -> None:
     with Served(patience=0.5) as served:
         reader, writer = await asyncio.open_connection("127.0.0.1", served.port)
-        writer.write(b"GET / HTTP/1.1\r\nhost: 127.0.0.1\r\n")  # and the request never ends
+        writer.write(b"GET / HTTP/1.1\r\nhost: 127.0.0.1\r\n")  # the end of the request is missing
         with contextlib.suppress(ConnectionResetError):
             assert await reader.read() == b""
         writer.close()
 
 
 @on_loop
-async def test_the_server_does_not_wait_for_the_rest_of_a_second_request() -> None:
+async def test_the_server_drops_a_client_whose_second_request_never_ends() -> None:
     with Served(patience=0.5) as served:
         reader, writer = await asyncio.open_connection("127.0.0.1", served.port)
         writer.write(b"GET /nothing HTTP/1.1\r\nhost: 127.0.0.1\r\n\r\nGET / HTTP/1.1\r\n")
@@ -148,18 +148,18 @@ async def test_a_client_that_stops_reading_is_dropped_and_costs_little() -> None
             with upgraded(served) as deaf:
                 deaf.sendall(masked('{"type": "hello", "v": 1}'))
                 deaf.setblocking(False)
-                # The agent repeats each utterance, so megabytes would wait for this client.
+                # The agent repeats each text, so megabytes of answers would wait for this client.
                 with contextlib.suppress(BlockingIOError, ConnectionError):
                     for number in range(400):
                         deaf.sendall(masked(json.dumps({"type": "say", "id": f"{number}", "text": text})))
                 hang_up = select.poll()
-                hang_up.register(deaf, 0)  # nothing is read
+                hang_up.register(deaf, 0)  # wait for the end of the connection without reading
                 assert await asyncio.to_thread(hang_up.poll, 15_000)
             assert served.files() <= open_before
 
 
 def everything(one: socket.socket) -> bytes:
-    """Return all that a socket receives until its other end closes."""
+    """Return all data that a socket receives until the other end closes."""
     one.settimeout(10)
     received = b""
     with contextlib.suppress(ConnectionResetError):
@@ -169,7 +169,7 @@ def everything(one: socket.socket) -> bytes:
 
 
 def until_closed(one: socket.socket) -> bytes:
-    """Return all that a WebSocket receives until it closes, cleanly or not."""
+    """Return all data that a WebSocket receives until it is closed, cleanly or not."""
     received = b""
     with contextlib.suppress(ConnectionResetError):
         while b"\x88" not in received and (more := one.recv(1000)):
@@ -179,7 +179,7 @@ def until_closed(one: socket.socket) -> bytes:
 
 @contextlib.contextmanager
 def upgraded(served: Served) -> Iterator[socket.socket]:
-    """A hand-made WebSocket with small buffers for unread data."""
+    """Open a WebSocket on a plain socket with a small buffer for unread data."""
     with socket.socket() as one:
         one.setsockopt(socket.SOL_SOCKET, socket.SO_RCVBUF, 4096)
         one.settimeout(10)
@@ -193,14 +193,14 @@ def upgraded(served: Served) -> Iterator[socket.socket]:
 
 
 def masked(text: str) -> bytes:
-    """Return a text frame of a client."""
+    """Return a text frame, masked as clients must mask it."""
     data = text.encode()
     size = bytes([0x80 | len(data)]) if len(data) < 126 else b"\xfe" + len(data).to_bytes(2, "big")
     return b"\x81" + size + b"\0\0\0\0" + data
 
 
 @on_loop
-async def test_the_server_hangs_up_on_a_client_that_does_not_close_its_end() -> None:
+async def test_the_server_drops_a_client_that_does_not_close_its_end_of_the_websocket() -> None:
     with Served(patience=0.5) as served:
         open_before = served.files()
         with upgraded(served) as stubborn:
@@ -212,7 +212,7 @@ async def test_the_server_hangs_up_on_a_client_that_does_not_close_its_end() -> 
 
 
 @on_loop
-async def test_the_server_survives_any_bytes() -> None:
+async def test_the_server_survives_requests_of_arbitrary_bytes() -> None:
     with Served() as served:
         async with unharmed(served, megabytes=8):
             for junk in (b"\0" * 1000, b"GET / HTTP/9.9\r\n\r\n", b"A" * 100_000, b"\x81\xff" * 50):
@@ -228,7 +228,7 @@ async def test_the_server_survives_any_bytes() -> None:
 
 
 @on_loop
-async def test_the_server_survives_invalid_frames_and_they_do_not_fill_the_log() -> None:
+async def test_the_server_survives_invalid_frames_and_does_not_log_them() -> None:
     no_text = b"\x81\x82\0\0\0\0\xff\xfe"
     unmasked = b"\x81\x02{}"
     reserved = b"\xf1\x80\0\0\0\0"

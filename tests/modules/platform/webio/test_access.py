@@ -20,7 +20,7 @@ def test_an_address_of_this_machine_is_local(host: str) -> None:
 
 
 @pytest.mark.parametrize("host", ["0.0.0.0", "::", "192.168.0.7", "museum.example", "", "localhost.evil.example"])
-def test_an_address_that_others_reach_is_not_local(host: str) -> None:
+def test_an_address_that_other_machines_can_reach_is_not_local(host: str) -> None:
     assert not is_local(host)
 
 
@@ -35,7 +35,7 @@ def test_an_address_that_others_reach_is_not_local(host: str) -> None:
         ("127.0.0.1:8420", "https://chat.museum.example"),
     ],
 )
-def test_the_page_and_the_sites_that_may_embed_it_may_connect(host: str, origin: str | None) -> None:
+def test_the_page_itself_and_sites_that_may_embed_it_may_connect(host: str, origin: str | None) -> None:
     access = Access(Settings(origins=("https://chat.museum.example",)))
     assert access.refusal({"host": host} | ({"origin": origin} if origin else {})) is None
 
@@ -48,14 +48,14 @@ def test_the_page_and_the_sites_that_may_embed_it_may_connect(host: str, origin:
         ("127.0.0.1:8420", "null"),
         ("127.0.0.1:8420", "http://["),
         ("127.0.0.1:8420", "https://museum.example.evil.example"),
-        ("evil.example:8420", "http://evil.example:8420"),  # a name that was made to point here
+        ("evil.example:8420", "http://evil.example:8420"),  # a foreign name whose address is this machine
         ("evil.example", None),
         ("127.0.0.1.evil.example", None),
         ("", None),
         ("[", None),
     ],
 )
-def test_other_names_and_sites_are_refused(host: str, origin: str | None) -> None:
+def test_other_host_names_and_other_sites_are_refused(host: str, origin: str | None) -> None:
     access = Access(Settings(origins=("https://museum.example",)))
     refusal = access.refusal({"host": host} | ({"origin": origin} if origin else {}))
     assert refusal is not None
@@ -88,7 +88,7 @@ EMBEDDED = {"host": "127.0.0.1:8420", "sec-fetch-dest": "iframe"}
 
 
 @pytest.mark.parametrize("referer", ["http://museum.example/", "HTTP://museum.example/a?b", "http://museum.example"])
-def test_a_site_that_embeds_the_chat_without_permission_is_named(referer: str) -> None:
+def test_foreign_embedder_returns_a_site_that_embeds_the_chat_without_permission(referer: str) -> None:
     assert Access(Settings()).foreign_embedder({**EMBEDDED, "referer": referer}) == "http://museum.example"
 
 
@@ -97,17 +97,17 @@ def test_a_site_that_embeds_the_chat_without_permission_is_named(referer: str) -
     [
         {**EMBEDDED, "referer": "https://museum.example/"},  # a site that may embed the chat
         {**EMBEDDED, "referer": "http://127.0.0.1:8420/"},  # the page's own site
-        {**EMBEDDED, "referer": "https://evil.example/", "sec-fetch-dest": "document"},  # a link, not a frame
+        {**EMBEDDED, "referer": "https://evil.example/", "sec-fetch-dest": "document"},  # from a link, not a frame
         {**EMBEDDED, "referer": "about:client"},
         EMBEDDED,
         {},
     ],
 )
-def test_a_site_that_may_embed_the_chat_or_is_unnamed_is_not_reported(headers: dict[str, str]) -> None:
+def test_foreign_embedder_returns_none_for_allowed_and_unknown_sites(headers: dict[str, str]) -> None:
     assert Access(Settings(origins=("https://museum.example",))).foreign_embedder(headers) is None
 
 
-def test_with_a_token_the_server_answers_to_any_name_but_not_to_any_site() -> None:
+def test_with_a_token_any_host_name_is_allowed_but_not_any_site() -> None:
     access = Access(Settings(token=TOKEN))
     assert access.refusal({"host": "robot.lan", "origin": "http://robot.lan"}) is None
     assert access.refusal({"host": "robot.lan", "origin": "https://evil.example"}) is not None
@@ -118,7 +118,7 @@ def test_a_wrong_token_is_refused(token: str | None) -> None:
     assert not Access(Settings(token=TOKEN)).admits(token)
 
 
-def test_the_right_token_is_accepted_and_without_a_token_in_the_settings_none_is_needed() -> None:
+def test_the_right_token_is_accepted_and_without_the_setting_no_token_is_needed() -> None:
     assert Access(Settings(token=TOKEN)).admits(TOKEN)
     assert Access(Settings()).admits(None)
 
@@ -134,16 +134,16 @@ async def test_a_wrong_token_is_refused_only_after_a_second() -> None:
 
 
 @pytest.mark.parametrize("origin", ["museum.example", "https://museum.example/", "*", "https://a; script-src *"])
-def test_a_text_that_is_no_origin_is_refused_as_a_setting(origin: str) -> None:
+def test_the_setting_origins_refuses_a_text_that_is_not_an_origin(origin: str) -> None:
     with pytest.raises(ValueError, match=r"write an origin, e\.g\. https://museum\.example"):
         Settings(origins=(origin,))
 
 
-def test_a_short_token_is_refused_as_a_setting() -> None:
+def test_the_setting_token_refuses_a_short_token() -> None:
     with pytest.raises(ValueError, match="write at least 12 characters"):
         Settings(token="secret")
 
 
-def test_a_token_of_digits_is_text_in_the_environment_too() -> None:
+def test_a_token_of_digits_from_the_environment_is_read_as_text() -> None:
     variables = {"RAVESTATE_WEBIO_TOKEN": "123456789012"}
     assert Access(load_settings([webio.module], None, variables)["webio"]).admits("123456789012")

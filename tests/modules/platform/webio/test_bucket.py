@@ -1,4 +1,4 @@
-"""The token bucket: a burst at once, then a fixed rate, and never more."""
+"""The token bucket allows a burst of events at once, and then a fixed rate."""
 
 from hypothesis import given
 from hypothesis import strategies as st
@@ -7,7 +7,7 @@ from ravestate.modules.platform.webio.channel import Bucket
 
 
 @given(st.lists(st.floats(0, 10), min_size=1, max_size=60))
-def test_in_any_span_of_time_burst_and_rate_bound_the_number_of_events(gaps: list[float]) -> None:
+def test_burst_and_rate_bound_the_number_of_events_in_any_period(gaps: list[float]) -> None:
     bucket = Bucket(burst=5, rate=2.0, now=0.0)
     now, through = 0.0, []
     for gap in gaps:

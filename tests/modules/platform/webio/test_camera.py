@@ -1,4 +1,4 @@
-"""The camera over the WebSocket: pictures that the agent asks for, faces that it shows, and mistakes of clients."""
+"""The camera over the WebSocket: pictures that the agent asks for, faces that it marks, and mistakes of clients."""
 
 import contextlib
 from collections.abc import AsyncGenerator
@@ -17,7 +17,7 @@ from ravestate.runtime.agent import Agent
 
 @contextlib.asynccontextmanager
 async def watching() -> AsyncGenerator[tuple[Session, Visit, Starlette]]:
-    """A visitor whose camera is on."""
+    """Open a page with a visitor whose camera is on."""
     async with page(eyes, privacy="We keep nothing.") as app, Visit(app) as visit:
         assert (await visit.hello())["sight"] == "We keep nothing."
         visit.tell("camera", on=True)
@@ -32,7 +32,7 @@ def show(visit: Visit, number: int, data: bytes = JPEG) -> None:
 
 
 @in_virtual_time
-async def test_the_agent_gets_the_picture_that_it_asks_for_and_the_page_the_faces() -> None:
+async def test_the_agent_gets_the_requested_picture_and_the_page_gets_the_faces() -> None:
     async with watching() as (session, visit, _):
         assert visit.nothing_more()  # the agent has not asked for a picture yet
         session.context.emit(glance)
@@ -62,7 +62,7 @@ async def test_a_picture_that_the_agent_has_not_asked_for_is_dropped() -> None:
 
 
 @in_virtual_time
-async def test_a_camera_that_goes_off_ends_the_wait_of_the_agent() -> None:
+async def test_the_agent_stops_waiting_for_a_picture_when_the_camera_goes_off() -> None:
     async with watching() as (session, visit, _):
         camera = session.context.read(rawio.camera)
         assert camera is not None
@@ -94,7 +94,7 @@ async def test_a_lost_connection_turns_the_camera_off() -> None:
 
 
 @in_virtual_time
-async def test_the_window_that_turns_its_camera_on_takes_it_from_the_other() -> None:
+async def test_turning_the_camera_on_in_a_window_turns_it_off_in_the_other() -> None:
     async with watching() as (session, visit, app), Visit(app) as other:
         await other.hello(session=visit.session)
         other.tell("camera", on=True)
@@ -105,13 +105,13 @@ async def test_the_window_that_turns_its_camera_on_takes_it_from_the_other() -> 
         show(other, 1)
         await other.next()
         assert session.context.read(pictures) == (JPEG,)
-        visit.tell("camera", on=False)  # its camera is off already
+        visit.tell("camera", on=False)  # the camera of this window is off already
         await past(0.1)
         assert session.context.read(rawio.camera) is not None
 
 
 @in_virtual_time
-async def test_an_agent_that_cannot_see_at_the_moment_turns_the_camera_off_and_may_see_later() -> None:
+async def test_an_agent_may_refuse_the_camera_and_use_it_again_later() -> None:
     async with watching() as (session, visit, _):
         first = session.context.read(rawio.camera)
         assert first is not None
@@ -128,7 +128,7 @@ async def test_an_agent_that_cannot_see_at_the_moment_turns_the_camera_off_and_m
 
 
 @pytest.mark.parametrize("data", [b"", b"\x89PNG", JPEG + bytes(LONGEST_PICTURE)])
-def test_a_picture_that_is_no_small_jpeg_is_refused(data: bytes) -> None:
+def test_data_that_is_not_a_small_jpeg_picture_is_refused(data: bytes) -> None:
     @in_virtual_time
     async def refused() -> None:
         async with watching() as (session, visit, _):
@@ -136,14 +136,14 @@ def test_a_picture_that_is_no_small_jpeg_is_refused(data: bytes) -> None:
             await visit.next()
             show(visit, 1, data)
             assert (await visit.next())["code"] == "malformed"
-            show(visit, 1)  # the next one counts
+            show(visit, 1)  # a correct picture is still accepted
             assert (await visit.next())["type"] == "faces"
 
     refused()
 
 
 @in_virtual_time
-async def test_an_agent_without_eyes_says_so() -> None:
+async def test_a_page_whose_agent_cannot_see_answers_camera_frames_with_an_error() -> None:
     async with page() as app, Visit(app) as visit:
         assert "sight" not in await visit.hello()
         await visit.next()

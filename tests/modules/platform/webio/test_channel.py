@@ -1,4 +1,4 @@
-"""A channel: its reading and its writing end together, and no fault is lost."""
+"""A channel sends each protocol error before it closes the WebSocket, and sends replies in order."""
 
 import asyncio
 from typing import Any
@@ -11,7 +11,7 @@ from ravestate.modules.platform.webio.fields import CLOSING_CODES, ProtocolError
 
 
 class Socket:
-    """One end of a WebSocket, which records all calls."""
+    """A stand-in for a WebSocket, which records all calls."""
 
     def __init__(self) -> None:
         self.done: list[Any] = []
@@ -27,11 +27,11 @@ class Socket:
 
 
 def channel_on(socket: Socket) -> Channel:
-    return Channel(socket, replies=2)  # type: ignore[arg-type]  # it is used like one
+    return Channel(socket, replies=2)  # type: ignore[arg-type]  # it has the methods that a channel uses
 
 
-@pytest.mark.parametrize("code", [*CLOSING_CODES, "too-long", "empty", "one that is added some day"])
-def test_any_protocol_error_is_sent_and_closes_the_socket(code: str) -> None:
+@pytest.mark.parametrize("code", [*CLOSING_CODES, "too-long", "empty", "a code that does not exist yet"])
+def test_a_protocol_error_is_sent_before_the_websocket_is_closed(code: str) -> None:
     socket = Socket()
 
     async def serve() -> None:
@@ -43,7 +43,7 @@ def test_any_protocol_error_is_sent_and_closes_the_socket(code: str) -> None:
 
 
 @in_virtual_time
-async def test_replies_wait_and_are_then_sent_in_order() -> None:
+async def test_replies_wait_until_they_are_sent_in_order() -> None:
     socket = Socket()
     channel = channel_on(socket)
     channel.reply("one")

@@ -1,4 +1,7 @@
-"""The web page passes the checks of platforms. A crash is a lost connection, because conversations live in memory."""
+"""The web page passes the checks for platforms.
+
+Conversations live in memory, so a crash would lose them. Here the checks lose all connections instead.
+"""
 
 import asyncio
 import contextlib
@@ -11,13 +14,13 @@ from ravestate.testing import CHECKS, Driver, echo
 
 
 class Visitor:
-    """A visitor whose page reconnects, and then repeats unconfirmed words."""
+    """A visitor whose page reconnects, and then sends unconfirmed texts again."""
 
     def __init__(self) -> None:
         self.visit: Visit | None = None
         self.session = ""
         self.last = 0
-        self.said: dict[str, str] = {}  # id → words that are not confirmed
+        self.said: dict[str, str] = {}  # texts that are not confirmed yet, by id
         self.heard: list[str] = []
         self.news = asyncio.Event()
         self._number = 0
@@ -57,7 +60,7 @@ class Visitor:
 
 
 class Visitors:
-    """The visitors of a page that runs in memory."""
+    """A page in memory, and its visitors."""
 
     def __init__(self) -> None:
         self._visitors: dict[str, Visitor] = {}
@@ -98,7 +101,7 @@ class Visitors:
 
 
 @pytest.mark.parametrize("check", CHECKS)
-def test_the_page_conforms(check: Callable[[Driver], Awaitable[None]]) -> None:
+def test_the_web_page_passes_the_checks_for_platforms(check: Callable[[Driver], Awaitable[None]]) -> None:
     @in_virtual_time
     async def test() -> None:
         await check(Visitors())

@@ -1,4 +1,4 @@
-"""One connection: its protocol, and the reaction to faulty clients."""
+"""A connection: its protocol, its limits, and its reactions to faulty clients."""
 
 import asyncio
 import json
@@ -24,7 +24,7 @@ async def talk_without_end(ctx: rs.RuleContext) -> None:
 
 
 @in_virtual_time
-async def test_a_silent_client_gets_a_message_about_the_expected_frame_and_is_closed() -> None:
+async def test_a_silent_client_gets_an_error_and_its_connection_is_closed() -> None:
     async with page() as app, Visit(app) as visit:
         error = await visit.next()
         assert error["text"] == 'no hello within 10 s: begin with {"type": "hello", "v": 1}'
@@ -46,7 +46,9 @@ async def test_a_silent_client_gets_a_message_about_the_expected_frame_and_is_cl
         ('{"type": "say", "id": "a", "text": " "}', "has nothing in it"),
     ],
 )
-def test_a_client_that_begins_without_hello_gets_an_error_and_is_closed(first: str | bytes, said: str) -> None:
+def test_a_client_that_begins_without_hello_gets_an_error_and_its_connection_is_closed(
+    first: str | bytes, said: str
+) -> None:
     @in_virtual_time
     async def test() -> None:
         async with page() as app, Visit(app) as visit:
@@ -60,7 +62,7 @@ def test_a_client_that_begins_without_hello_gets_an_error_and_is_closed(first: s
 
 
 @in_virtual_time
-async def test_a_later_bad_frame_gets_an_error_and_the_conversation_goes_on() -> None:
+async def test_a_later_bad_frame_gets_an_error_and_the_conversation_continues() -> None:
     async with page() as app, Visit(app) as visit:
         await visit.hello()
         await visit.messages(1)
@@ -77,7 +79,7 @@ async def test_a_later_bad_frame_gets_an_error_and_the_conversation_goes_on() ->
 
 
 @in_virtual_time
-async def test_a_refused_text_is_named_so_that_it_is_not_sent_again_and_again() -> None:
+async def test_the_error_for_a_refused_text_has_its_id() -> None:
     async with page() as app, Visit(app) as visit:
         await visit.hello()
         await visit.messages(1)
@@ -88,8 +90,8 @@ async def test_a_refused_text_is_named_so_that_it_is_not_sent_again_and_again() 
 
 
 @in_virtual_time
-async def test_the_longest_text_is_taken_however_json_writes_it() -> None:
-    text = "\U0001f98a" * 10_000  # twelve bytes each
+async def test_the_longest_text_is_accepted_even_if_json_escapes_each_character() -> None:
+    text = "\U0001f98a" * 10_000  # JSON writes each character as twelve bytes
     async with page() as app, Visit(app) as visit:
         await visit.hello()
         await visit.messages(1)
@@ -109,7 +111,7 @@ async def test_a_frame_that_is_too_long_ends_the_connection() -> None:
 
 
 @in_virtual_time
-async def test_a_client_that_sends_too_much_has_to_wait_and_loses_nothing() -> None:
+async def test_a_client_that_sends_too_many_texts_is_slowed_down_and_loses_nothing() -> None:
     async with page() as app, Visit(app) as visit, Visit(app) as other:
         await visit.hello()
         await other.hello()
@@ -121,7 +123,7 @@ async def test_a_client_that_sends_too_much_has_to_wait_and_loses_nothing() -> N
 
 
 @in_virtual_time
-async def test_notices_of_writing_do_not_delay_the_texts() -> None:
+async def test_frames_about_writing_do_not_count_for_the_limit_of_texts() -> None:
     async with page() as app, Visit(app) as visit:
         await visit.hello()
         for number in range(connection.BURST):
@@ -132,7 +134,7 @@ async def test_notices_of_writing_do_not_delay_the_texts() -> None:
 
 
 @in_virtual_time
-async def test_a_client_that_reports_writing_all_the_time_is_heard_at_once() -> None:
+async def test_a_text_after_many_frames_about_writing_is_heard_at_once() -> None:
     async with page() as app, Visit(app) as visit:
         await visit.hello()
         await visit.messages(1)
@@ -144,7 +146,7 @@ async def test_a_client_that_reports_writing_all_the_time_is_heard_at_once() -> 
 
 
 @in_virtual_time
-async def test_messages_about_typing_are_ignored_above_a_limit() -> None:
+async def test_frames_about_writing_are_ignored_above_a_limit() -> None:
     noticed = 0
     scribe = rs.Module("scribe", requires=(rawio,))
 
@@ -162,11 +164,11 @@ async def test_messages_about_typing_are_ignored_above_a_limit() -> None:
         before = noticed
         visit.tell("writing")
         await past(1.0)
-        assert noticed == before + 1  # the ignored messages use up no tokens
+        assert noticed == before + 1  # the ignored frames have used up no tokens
 
 
 @in_virtual_time
-async def test_a_client_that_sends_nonsense_all_the_time_has_to_wait_too() -> None:
+async def test_a_client_that_sends_many_malformed_frames_is_slowed_down() -> None:
     async with page() as app, Visit(app) as visit:
         await visit.hello()
         await visit.messages(1)
@@ -178,7 +180,7 @@ async def test_a_client_that_sends_nonsense_all_the_time_has_to_wait_too() -> No
 
 
 @in_virtual_time
-async def test_a_client_that_asks_and_does_not_read_is_dropped() -> None:
+async def test_a_client_that_does_not_read_the_replies_to_its_frames_is_dropped() -> None:
     async with page() as app, Visit(app) as visit:
         await visit.hello()
         visit.reading.clear()
@@ -189,13 +191,13 @@ async def test_a_client_that_asks_and_does_not_read_is_dropped() -> None:
 
 
 @in_virtual_time
-async def test_a_slow_reader_gets_all_that_is_kept_and_learns_of_the_rest() -> None:
+async def test_a_client_that_reads_too_slowly_is_dropped_and_can_resume_later() -> None:
     async with page(flood) as app, Visit(app) as slow:
         await slow.hello()
         slow.reading.clear()
         slow.say("go")
         (session,) = app.state.sessions
-        while session.history.last < MESSAGES + 11:  # several turns of the loop
+        while session.history.last < MESSAGES + 11:  # this takes several turns of the loop
             await past(0.0)
         slow.reading.set()
         frames = await slow.frames("error")
@@ -212,7 +214,7 @@ async def test_a_slow_reader_gets_all_that_is_kept_and_learns_of_the_rest() -> N
 
 
 @in_virtual_time
-async def test_the_token_comes_in_the_hello_or_in_the_header() -> None:
+async def test_a_client_sends_the_token_in_its_hello_or_in_a_header() -> None:
     async with page(token=TOKEN, host="0.0.0.0") as app:
         async with Visit(app) as visit:
             assert (await visit.hello(token=TOKEN))["type"] == "welcome"
@@ -226,7 +228,7 @@ async def test_the_token_comes_in_the_hello_or_in_the_header() -> None:
 
 
 @in_virtual_time
-async def test_a_foreign_origin_is_refused_before_anything_is_said() -> None:
+async def test_a_foreign_origin_is_refused_before_the_websocket_opens() -> None:
     async with page() as app, Visit(app, origin="https://evil.example") as visit:
         start, body = await visit.next(), await visit.next()
         assert (visit.accepted, start["status"]) == (False, 403)
@@ -241,7 +243,7 @@ async def test_a_site_that_may_embed_the_page_may_connect() -> None:
 
 
 @in_virtual_time
-async def test_a_script_in_a_message_is_plain_text() -> None:
+async def test_a_script_in_a_text_is_sent_as_plain_text() -> None:
     script = "</script><script>alert(1)</script>"
     async with page() as app, Visit(app) as visit:
         await visit.hello(name=script)
@@ -255,21 +257,21 @@ def test_an_agent_without_the_module_has_no_page() -> None:
         webio.app(Agent(flood))
 
 
-def test_a_console_for_each_visitor_is_refused() -> None:
+def test_an_agent_with_webio_and_conio_is_refused() -> None:
     from ravestate.modules import conio
 
     with pytest.raises(rs.PlatformError, match="webio has many users, conio has one: leave conio out"):
         webio.app(Agent(webio, conio))
 
 
-def test_a_note_for_the_page_is_in_the_welcome() -> None:
+def test_the_welcome_has_the_note_from_the_settings() -> None:
     @in_virtual_time
     async def test() -> None:
         async with page(note="Small talk without a language model.") as app, Visit(app) as visit:
             assert (await visit.hello())["note"] == "Small talk without a language model."
 
 
-def test_frames_on_the_wire_are_what_the_reference_shows() -> None:
+def test_the_server_sends_the_frames_that_the_reference_shows() -> None:
     @in_virtual_time
     async def test() -> None:
         async with page(title="Elske") as app, Visit(app) as visit:

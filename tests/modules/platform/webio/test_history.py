@@ -1,4 +1,4 @@
-"""The history of a conversation: numbered without gap, bounded in every way."""
+"""The history of a conversation numbers its messages without gaps, and limits their number and their total length."""
 
 from hypothesis import given
 from hypothesis import strategies as st
@@ -20,7 +20,7 @@ def test_messages_are_numbered_and_kept_in_order() -> None:
 
 
 @given(st.lists(st.text(max_size=30)), st.integers(0, 40))
-def test_a_history_stays_within_its_bounds_and_has_no_gap(texts: list[str], since: int) -> None:
+def test_a_history_stays_within_its_limits_and_has_no_gaps(texts: list[str], since: int) -> None:
     history = History(messages=5, characters=40)
     for text in texts:
         history.add("agent", text, 0)
@@ -33,13 +33,13 @@ def test_a_history_stays_within_its_bounds_and_has_no_gap(texts: list[str], sinc
     ]
 
 
-def test_a_message_larger_than_the_whole_history_is_cut() -> None:
+def test_a_message_longer_than_the_limit_of_the_history_is_cut() -> None:
     history = History(characters=10)
     history.add("agent", "x" * 11, 0)
     assert [message.text for message in history.since(0)] == ["x" * 10]
 
 
-def test_messages_may_come_while_the_history_is_read() -> None:
+def test_messages_may_be_added_while_the_history_is_read() -> None:
     history = History(messages=2)
     history.add("agent", "one", 0)
     seen: list[int] = []

@@ -1,4 +1,4 @@
-"""The time limits for requests and answers."""
+"""The server's time limits for requests and answers."""
 
 import asyncio
 from typing import Any
@@ -16,10 +16,11 @@ from ravestate.modules.platform.webio.limits import LOWEST_RATE, TIMEOUT, Limite
 
 
 class Reader:
-    """An application that reads a request, and answers with the number of bytes.
+    """An application that reads a request, and answers with the size of its body in bytes.
 
     Args:
-        before, after: The seconds before it reads, and before it answers.
+        before: The time before it begins to read (seconds).
+        after: The time after reading and before the answer (seconds).
     """
 
     def __init__(self, before: float = 0.0, after: float = 0.0) -> None:
@@ -43,7 +44,7 @@ class Reader:
 
 
 class Refuser:
-    """An application that answers before it has read anything."""
+    """An application that answers without reading the request."""
 
     async def __call__(self, scope: Scope, receive: Receive, send: Send) -> None:
         await send({"type": "http.response.start", "status": 401, "headers": [(b"content-length", b"0")]})
@@ -51,7 +52,7 @@ class Refuser:
 
 
 class Caller(asyncio.Transport):
-    """A client that has connected, from the server's side."""
+    """A stand-in for a client: the transport that the server uses."""
 
     def __init__(self, app: Any) -> None:
         super().__init__({"peername": ("127.0.0.1", 50000), "sockname": ("127.0.0.1", 8420)})
@@ -66,7 +67,7 @@ class Caller(asyncio.Transport):
         self.limits.connection_made(self)
 
     def send(self, data: bytes) -> None:
-        """Send something."""
+        """Send data to the server."""
         assert self.reads
         self.limits.data_received(data)
 
@@ -107,7 +108,7 @@ def request(size: int) -> bytes:
 
 
 @in_virtual_time
-async def test_a_steady_request_is_taken_however_long_it_takes() -> None:
+async def test_a_long_request_is_accepted_if_its_rate_is_high_enough() -> None:
     size = int(2 * LOWEST_RATE * 20 * TIMEOUT)
     caller = Caller(Reader())
     caller.send(request(size))
@@ -118,7 +119,7 @@ async def test_a_steady_request_is_taken_however_long_it_takes() -> None:
 
 
 @in_virtual_time
-async def test_the_server_does_not_wait_for_a_very_slow_request() -> None:
+async def test_the_server_drops_a_client_whose_request_is_very_slow() -> None:
     caller = Caller(Reader())
     caller.send(request(10**6))
     await caller.send_slowly(b"x" * 10**6, rate=100)
@@ -126,7 +127,7 @@ async def test_the_server_does_not_wait_for_a_very_slow_request() -> None:
 
 
 @in_virtual_time
-async def test_a_request_in_bursts_is_taken_if_its_average_rate_is_high_enough() -> None:
+async def test_a_request_in_bursts_is_accepted_if_its_average_rate_is_high_enough() -> None:
     size = int(LOWEST_RATE * 20 * TIMEOUT)
     caller = Caller(Reader())
     caller.send(request(size))
@@ -139,18 +140,18 @@ async def test_a_request_in_bursts_is_taken_if_its_average_rate_is_high_enough()
 
 
 @in_virtual_time
-async def test_a_request_in_bursts_is_cut_off_if_its_average_rate_is_too_low() -> None:
+async def test_the_server_drops_a_client_whose_bursts_have_too_low_an_average_rate() -> None:
     size, each = 10**7, int(LOWEST_RATE * TIMEOUT)
     caller = Caller(Reader())
     caller.send(request(size))
-    while caller.hung_up is None:  # half of what should come
+    while caller.hung_up is None:  # each burst is half of the data that should come in its time
         caller.send(b"x" * each)
         await past(2 * TIMEOUT)
         assert asyncio.get_running_loop().time() < 10 * TIMEOUT
 
 
 @pytest.mark.parametrize(("share", "looks"), [(0.6, 3), (0.9, 10)])
-def test_the_closer_a_client_is_to_the_lowest_rate_the_later_the_server_hangs_up(share: float, looks: int) -> None:
+def test_a_client_slightly_below_the_lowest_rate_is_dropped_later_than_a_slow_one(share: float, looks: int) -> None:
     @in_virtual_time
     async def test() -> None:
         caller = Caller(Reader())
@@ -162,14 +163,14 @@ def test_the_closer_a_client_is_to_the_lowest_rate_the_later_the_server_hangs_up
 
 
 @in_virtual_time
-async def test_the_server_does_not_wait_for_slow_headers() -> None:
+async def test_the_server_drops_a_client_whose_headers_are_slow() -> None:
     caller = Caller(Reader())
     await caller.send_slowly(b"GET / HTTP/1.1\r\nx: " + b"x" * 1000, rate=1)
     assert caller.hung_up == TIMEOUT
 
 
 @in_virtual_time
-async def test_the_server_does_not_hang_up_on_a_client_that_waits_for_an_answer() -> None:
+async def test_the_server_keeps_a_client_that_waits_for_an_answer() -> None:
     caller = Caller(Reader(after=10 * TIMEOUT))
     caller.send(request(5) + b"hello")
     await past(10 * TIMEOUT + 1)
@@ -177,7 +178,7 @@ async def test_the_server_does_not_hang_up_on_a_client_that_waits_for_an_answer(
 
 
 @in_virtual_time
-async def test_the_server_does_not_hang_up_on_a_client_whose_request_it_reads_late() -> None:
+async def test_the_server_keeps_a_client_whose_request_it_reads_late() -> None:
     size = 10**6
     caller = Caller(Reader(before=10 * TIMEOUT + 3))
     caller.send(request(size))
@@ -187,7 +188,7 @@ async def test_the_server_does_not_hang_up_on_a_client_whose_request_it_reads_la
 
 
 @in_virtual_time
-async def test_the_server_hangs_up_on_a_client_that_keeps_sending_after_the_answer() -> None:
+async def test_the_server_drops_a_client_that_keeps_sending_after_the_answer() -> None:
     caller = Caller(Refuser())
     caller.send(request(10**7))
     await caller.send_slowly(b"x" * 10**7, rate=2 * LOWEST_RATE)
@@ -195,15 +196,15 @@ async def test_the_server_hangs_up_on_a_client_that_keeps_sending_after_the_answ
 
 
 @in_virtual_time
-async def test_the_server_hangs_up_on_a_client_that_does_not_read_the_answer() -> None:
+async def test_the_server_drops_a_client_that_does_not_read_the_answer() -> None:
     caller = Caller(Reader(after=1.0))
     caller.send(request(5) + b"hello")
-    caller.limits.pause_writing()  # as the transport does when the client reads nothing
+    caller.limits.pause_writing()  # the transport would call this if the client read nothing
     await past(5 * TIMEOUT)
     assert caller.hung_up == 2 * TIMEOUT
 
 
-def test_a_server_stops_while_a_client_is_closing_its_connection() -> None:
+def test_a_websocket_that_is_closing_can_be_shut_down() -> None:
     socket = object.__new__(LimitedWebSocket)
     socket.conn = ServerProtocol(state=State.CLOSING)
     socket.transport, socket.queue = Mock(), Mock()

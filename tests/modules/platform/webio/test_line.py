@@ -1,4 +1,4 @@
-"""The line to a page: whole blocks, streams of sound, the loudspeaker's position, and one window at a time."""
+"""The audio line to a page: blocks and streams of sound, the position of the loudspeaker, and browser windows."""
 
 import asyncio
 
@@ -12,7 +12,7 @@ from ravestate.modules.platform.webio.line import AHEAD, BLOCK, CHUNK, MOST_HEAR
 
 
 class Speaker:
-    """A window that takes sound and plays it when the test says so."""
+    """A stand-in for a browser window. It fetches sound, and the test says how much it has played."""
 
     def __init__(self, line: PageLine) -> None:
         self.line = line
@@ -32,7 +32,7 @@ class Speaker:
 
 
 async def taken(line: PageLine, count: int) -> list[bytes]:
-    """Return the next blocks of a line."""
+    """Return the next blocks of sound that the agent hears on a line."""
     blocks = line.blocks()
     found = [await anext(blocks) for _ in range(count)]
     await blocks.aclose()
@@ -53,7 +53,7 @@ async def test_sound_of_any_size_comes_in_blocks_of_20_ms() -> None:
 
 
 @in_virtual_time
-async def test_the_newest_sound_is_kept_if_the_agent_takes_none() -> None:
+async def test_if_the_agent_reads_no_sound_only_the_newest_sound_is_kept() -> None:
     line = PageLine()
     line.take(window := Speaker(line))
     for number in range(30):
@@ -64,42 +64,42 @@ async def test_the_newest_sound_is_kept_if_the_agent_takes_none() -> None:
 
 
 @in_virtual_time
-async def test_after_the_microphone_goes_off_the_agent_hears_silence_so_that_the_turn_ends() -> None:
+async def test_after_the_microphone_goes_off_the_agent_hears_silence() -> None:
     line = PageLine()
     line.take(window := Speaker(line))
     line.hear(window, b"\x01" * BLOCK)
     line.leave(window)
-    line.hear(window, b"\x02" * BLOCK)  # too late
+    line.hear(window, b"\x02" * BLOCK)  # too late, because the window has left
     blocks = await taken(line, 101)
     assert blocks == [b"\x01" * BLOCK, *[bytes(BLOCK)] * 100]
 
 
 @in_virtual_time
-async def test_the_position_is_what_the_window_reports() -> None:
+async def test_played_is_the_reported_position_plus_a_short_estimate() -> None:
     line = PageLine()
     line.take(window := Speaker(line))
     line.play(tone(3.0))
     assert len(window.sound) == AHEAD * 2
     assert line.played == 0.0
     await past(1.0)
-    assert line.played == 0.0  # nothing plays yet
+    assert line.played == 0.0  # the window has not reported that the sound plays
     window.played(0.5)
     assert line.played == 0.5
     await past(0.1)
-    assert line.played == 0.6  # by estimate, the loudspeaker has gone on since then
+    assert line.played == 0.6  # the line assumes that the loudspeaker has continued
     await past(1.0)
-    assert line.played == 0.7  # without a report, the estimate stops
+    assert line.played == 0.7  # but without a report, it assumes this only for a short time
     window.played(0.6)
-    assert line.played == 0.7  # the position never goes back
+    assert line.played == 0.7  # the position never decreases
     window.played(1.0)
     window.played(1.0)
     await past(1.0)
-    assert line.played == 1.0  # the position stands still
+    assert line.played == 1.0  # two equal reports: the loudspeaker does not play
     assert len(window.sound) == 2 * 2 * AHEAD
 
 
 @in_virtual_time
-async def test_a_window_cannot_have_played_more_sound_than_it_got() -> None:
+async def test_a_window_cannot_report_more_sound_than_it_has_received() -> None:
     line = PageLine()
     line.take(window := Speaker(line))
     line.play(tone(1.0))
@@ -124,7 +124,7 @@ async def test_a_line_is_drained_once_everything_has_been_played() -> None:
 
 
 @in_virtual_time
-async def test_dropped_sound_is_neither_played_nor_sent_and_the_position_goes_on_from_there() -> None:
+async def test_stop_drops_the_remaining_sound_and_keeps_the_position() -> None:
     line = PageLine()
     line.take(window := Speaker(line))
     line.play(tone(3.0))
@@ -133,7 +133,7 @@ async def test_dropped_sound_is_neither_played_nor_sent_and_the_position_goes_on
     line.stop()
     await line.drained()
     assert (line.stream, line.played) == (stream + 1, 0.5)
-    line.report(window, stream, 24_000)  # of the dropped stream
+    line.report(window, stream, 24_000)  # a late report about the dropped stream
     assert line.played == 0.5
     window.sound = b""
     line.play(tone(1.0))
@@ -143,7 +143,7 @@ async def test_dropped_sound_is_neither_played_nor_sent_and_the_position_goes_on
 
 
 @in_virtual_time
-async def test_only_one_window_at_a_time_has_the_line_and_the_other_window_gets_a_message() -> None:
+async def test_only_one_window_has_the_line_and_the_other_gets_a_message() -> None:
     line = PageLine()
     line.take(one := Speaker(line))
     line.take(one)
@@ -155,12 +155,12 @@ async def test_only_one_window_at_a_time_has_the_line_and_the_other_window_gets_
     assert await taken(line, 1) == [bytes([2]) * BLOCK]
     line.play(tone(0.5))
     assert other.sound == tone(0.5)
-    line.leave(one)  # it has already lost the line
+    line.leave(one)  # this window has already lost the line
     assert line.window is other
 
 
 @in_virtual_time
-async def test_without_a_window_sound_counts_as_played_because_the_visitor_reads_the_words() -> None:
+async def test_without_a_window_all_sound_counts_as_played_at_once() -> None:
     line = PageLine()
     line.play(tone(1.5))
     await line.drained()
@@ -170,12 +170,12 @@ async def test_without_a_window_sound_counts_as_played_because_the_visitor_reads
 
 
 @in_virtual_time
-async def test_a_window_that_plays_nothing_loses_the_line() -> None:
+async def test_a_window_that_does_not_play_its_sound_loses_the_line() -> None:
     line = PageLine()
     line.take(window := Speaker(line))
     listening = asyncio.create_task(anext(line.blocks()))
     await past(60.0)
-    assert window.lost == []  # silence is no fault
+    assert window.lost == []  # there is no sound to play
     line.play(tone(3.0))
     await past(4.0)
     window.played(0.1)
@@ -188,7 +188,7 @@ async def test_a_window_that_plays_nothing_loses_the_line() -> None:
 
 
 @in_virtual_time
-async def test_a_window_gets_a_message_if_the_agent_does_not_listen() -> None:
+async def test_a_window_gets_a_message_if_the_agent_does_not_read_the_sound() -> None:
     left: list[int] = []
     line = PageLine(lambda: left.append(1))
     line.take(window := Speaker(line))
@@ -199,7 +199,7 @@ async def test_a_window_gets_a_message_if_the_agent_does_not_listen() -> None:
 
 
 @in_virtual_time
-async def test_a_closed_line_ends_and_takes_nothing() -> None:
+async def test_a_closed_line_yields_no_blocks_and_plays_nothing() -> None:
     line = PageLine()
     line.take(window := Speaker(line))
     blocks = [asyncio.create_task(anext(line.blocks(), None)) for _ in range(2)]

@@ -1,4 +1,4 @@
-"""Frames: any text gives a record or a `ProtocolError`, and `parse` reads all that `serialise` writes."""
+"""Frames: `parse` returns a record for each text or raises a `ProtocolError`, and reads all that `serialise` writes."""
 
 import json
 from typing import Any
@@ -73,12 +73,12 @@ FIELDS = ("v", "session", "last", "token", "name", "id", "text")
 
 
 @given(client_frames)
-def test_frames_of_a_client_are_read(frame: Any) -> None:
+def test_parse_reads_each_serialised_frame_of_a_client(frame: Any) -> None:
     assert parse(serialise(frame), CLIENT) == frame
 
 
 @given(server_frames)
-def test_frames_of_the_server_are_read(frame: Any) -> None:
+def test_parse_reads_each_serialised_frame_of_the_server(frame: Any) -> None:
     assert parse(serialise(frame), SERVER) == frame
 
 
@@ -88,7 +88,7 @@ def understood(text: str | bytes) -> bool:
         frame = parse(text, CLIENT)
     except ProtocolError as error:
         assert error.code in ("malformed", "too-long", "version")
-        str(error).encode()  # it can be sent back
+        str(error).encode()  # the error can be sent to the client
         return False
     assert isinstance(frame, ClientFrame)
     serialise(frame).encode()
@@ -96,12 +96,12 @@ def understood(text: str | bytes) -> bool:
 
 
 @given(st.text() | st.binary())
-def test_any_text_is_a_frame_or_refused(text: str | bytes) -> None:
+def test_parse_accepts_or_refuses_any_text(text: str | bytes) -> None:
     understood(text)
 
 
 @given(values)
-def test_any_json_is_a_frame_or_refused(value: Any) -> None:
+def test_parse_accepts_or_refuses_any_json(value: Any) -> None:
     understood(json.dumps(value))
 
 
@@ -109,14 +109,14 @@ def test_any_json_is_a_frame_or_refused(value: Any) -> None:
     st.sampled_from(("hello", "say", "writing", "bye", "ping", "welcome", "message")),
     st.dictionaries(st.sampled_from(FIELDS), values),
 )
-def test_any_fields_make_a_frame_or_are_refused(name: str, fields: dict[str, Any]) -> None:
+def test_parse_accepts_or_refuses_any_fields(name: str, fields: dict[str, Any]) -> None:
     understood(json.dumps({**fields, "type": name}))
 
 
 @pytest.mark.parametrize(
     "text", ["[" * 60_000, '{"type":' * 20_000, "1" * 60_000, '{"type": "ping", "x": NaN}', "\ud800"]
 )
-def test_malicious_texts_do_not_break_the_parser(text: str) -> None:
+def test_parse_accepts_or_refuses_malicious_texts(text: str) -> None:
     understood(text)
 
 
@@ -142,14 +142,14 @@ def test_malicious_texts_do_not_break_the_parser(text: str) -> None:
         ('{"type": "say", "id": "a", "text": 7}', "say: \"text\": '7' is not a text"),
     ],
 )
-def test_a_malformed_frame_gets_a_message_about_the_expected_form(text: str | bytes, said: str) -> None:
+def test_the_error_for_a_malformed_frame_says_what_is_expected(text: str | bytes, said: str) -> None:
     with pytest.raises(ProtocolError) as refused:
         parse(text, CLIENT)
     assert refused.value.code == "malformed"
     assert said in str(refused.value)
 
 
-def test_a_frame_of_another_protocol_version_is_refused_with_this_reason() -> None:
+def test_a_frame_of_another_protocol_version_is_refused() -> None:
     with pytest.raises(ProtocolError, match='"v": 2: this side speaks version 1 only') as refused:
         parse('{"type": "hello", "v": 2}', CLIENT)
     assert refused.value.code == "version"
@@ -164,14 +164,14 @@ def test_unknown_fields_are_ignored() -> None:
     [
         ("Ada\n Lovelace", "Ada Lovelace"),
         ("\u202eAda\u2069", "Ada"),
-        ("\u0928\u093f\u200d\u0915", "\u0928\u093f\u200d\u0915"),  # spelt with a joiner
+        ("\u0928\u093f\u200d\u0915", "\u0928\u093f\u200d\u0915"),  # a word that needs the zero-width joiner
     ],
 )
-def test_a_name_is_on_one_line_and_does_not_change_the_direction_of_writing(name: str, shown: str) -> None:
+def test_names_lose_line_breaks_and_characters_for_the_direction_of_writing(name: str, shown: str) -> None:
     assert parse(json.dumps({"type": "hello", "v": 1, "name": name}), CLIENT).name == shown
 
 
-def test_control_characters_are_taken_out() -> None:
+def test_texts_lose_control_characters() -> None:
     text = json.dumps({"type": "say", "id": "a", "text": "a\x1b[31mb\x00\ud800"})
     assert parse(text, CLIENT).text == "ab\ufffd"
 
@@ -185,7 +185,7 @@ def test_control_characters_are_taken_out() -> None:
         ("\x00" + "x" * 10_000, "x" * 10_000),
     ],
 )
-def test_the_agent_hears_the_readable_part_of_a_text(text: str, heard: str) -> None:
+def test_heard_text_returns_the_readable_part_of_a_text(text: str, heard: str) -> None:
     assert heard_text(text) == heard
 
 
@@ -193,7 +193,7 @@ def test_the_agent_hears_the_readable_part_of_a_text(text: str, heard: str) -> N
     ("text", "code"),
     [("x" * 10_001, "too-long"), ("", "empty"), (" \n\t", "empty"), ("\x85\x1b[0m", "empty")],
 )
-def test_long_and_empty_texts_are_refused_from_any_sender(text: str, code: str) -> None:
+def test_long_and_empty_texts_are_refused(text: str, code: str) -> None:
     with pytest.raises(ProtocolError) as refused:
         heard_text(text)
     assert (refused.value.code, refused.value.id) == (code, None)

@@ -21,7 +21,7 @@ speaker = rs.Module("speaker", requires=(rawio,))
 
 @speaker.rule(when=rawio.input.changed, writes=(rawio.output, rawio.speaking), emits=rawio.piece)
 async def speak(ctx: rs.RuleContext) -> None:
-    """Say each part of the input before the `/`, one a second; then say the text after the `/` as one utterance."""
+    """Emit the parts of the input before the `/` as pieces, one per second. Then write the text after the `/`."""
     words, _, whole = ctx.payload(rawio.input.changed).partition("/")
     ctx[rawio.speaking] = True
     for word in words.split("|"):
@@ -53,7 +53,7 @@ async def chat(ctx: rs.RuleContext) -> None:
 
 
 @in_virtual_time
-async def test_an_agent_that_answers_at_once_is_not_shown_thinking() -> None:
+async def test_the_page_does_not_show_a_quick_agent_as_thinking() -> None:
     async with page(slow) as app, Visit(app) as visit:
         await visit.hello()
         visit.say("0.2")
@@ -64,7 +64,7 @@ async def test_an_agent_that_answers_at_once_is_not_shown_thinking() -> None:
 
 
 @in_virtual_time
-async def test_a_slower_agent_is_shown_thinking_until_the_answer() -> None:
+async def test_the_page_shows_a_slower_agent_as_thinking_until_the_answer() -> None:
     async with page(slow) as app, Visit(app) as visit:
         await visit.hello()
         visit.say("2.0")
@@ -77,7 +77,7 @@ async def test_a_slower_agent_is_shown_thinking_until_the_answer() -> None:
 
 
 @in_virtual_time
-async def test_after_a_filler_the_agent_still_thinks_and_then_answers() -> None:
+async def test_after_a_filler_the_page_still_shows_the_agent_as_thinking() -> None:
     async with page(doubter, fillers) as app, Visit(app) as visit:
         await visit.hello()
         visit.say("who?")
@@ -101,12 +101,12 @@ async def think(ctx: rs.RuleContext) -> None:
 
 @thinker.rule(when=rawio.output.changed.detached(), emits=rawio.typing)
 async def take_note(ctx: rs.RuleContext) -> None:
-    """Continue with other work after the answer."""
+    """Do other work after the answer."""
     await ctx.sleep(60.0)
 
 
 @in_virtual_time
-async def test_while_the_agent_says_fillers_it_is_still_shown_thinking() -> None:
+async def test_several_fillers_do_not_interrupt_the_display_of_thinking() -> None:
     async with page(thinker, fillers) as app, Visit(app) as visit:
         await visit.hello()
         visit.say("why?")
@@ -146,7 +146,7 @@ async def test_an_utterance_is_shown_as_it_grows() -> None:
         frames = (await visit.frames("message"))[1:] + await visit.frames("message")
         assert frames == [
             {"type": "piece", "at": 0, "text": "Ve🙂r"},
-            {"type": "piece", "at": 5, "text": "meer "},  # UTF-16 units
+            {"type": "piece", "at": 5, "text": "meer "},  # positions count UTF-16 units
             {"type": "piece", "at": 10, "text": "did."},
             frames[-1],
         ]

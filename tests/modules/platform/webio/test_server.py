@@ -1,4 +1,4 @@
-"""The web server: its sockets, its answers, its end."""
+"""The web server: its answers, its addresses, its end, and the documented client."""
 
 import asyncio
 import io
@@ -36,7 +36,7 @@ def served():
         yield served
 
 
-def test_the_page_and_its_files_are_there(served: Served) -> None:
+def test_the_server_serves_the_page_and_its_files(served: Served) -> None:
     with httpx.Client(base_url=f"http://{served.host}") as client:
         page = client.get("/")
         assert page.status_code == 200
@@ -71,7 +71,7 @@ def test_headers_restrict_scripts_and_frames(served: Served) -> None:
         assert headers["x-content-type-options"] == "nosniff"
 
 
-def test_a_foreign_host_name_that_points_here_is_refused(served: Served) -> None:
+def test_a_foreign_host_name_that_resolves_to_this_machine_is_refused(served: Served) -> None:
     answer = httpx.get(f"http://{served.host}/", headers={"host": "evil.example"})
     assert answer.status_code == 403
     assert "this page is not known as 'evil.example'" in answer.text
@@ -144,7 +144,7 @@ async def test_a_token_with_a_control_character_is_refused_and_not_logged() -> N
 
 
 def served_by(monkeypatch: pytest.MonkeyPatch, terminals: str) -> tuple[str, str]:
-    """Return what a server with a token announces on both outputs, some of which are terminals."""
+    """Return the announcements of a server with a token on both outputs. `terminals` names those that are terminals."""
     written = {"stdout": io.StringIO(), "stderr": io.StringIO()}
     for name, output in written.items():
         output.isatty = lambda name=name: name in terminals  # type: ignore[method-assign]
@@ -168,7 +168,7 @@ def test_a_terminal_shows_the_link_with_the_token(monkeypatch: pytest.MonkeyPatc
 
 
 @pytest.mark.parametrize("terminal", ["", "stderr"])
-def test_the_token_goes_to_no_output_but_a_terminal(monkeypatch: pytest.MonkeyPatch, terminal: str) -> None:
+def test_the_token_is_shown_only_on_a_terminal(monkeypatch: pytest.MonkeyPatch, terminal: str) -> None:
     out, err = served_by(monkeypatch, terminal)
     assert out == (
         "The agent is at http://127.0.0.1:8420/ (Ctrl-C ends it)\n"
@@ -183,7 +183,7 @@ def test_a_server_on_all_addresses_shows_the_name_of_the_machine() -> None:
         assert served.line == f"The agent is at {link} (Ctrl-C ends it)\n"
 
 
-def test_a_server_that_others_can_reach_needs_a_token() -> None:
+def test_a_server_that_other_machines_can_reach_needs_a_token() -> None:
     with pytest.raises(rs.PlatformError, match=r"others can reach host '0\.0\.0\.0', so a token is needed"):
         rs.run(parrot, webio, settings={"webio": {"host": "0.0.0.0", "port": 0}})
 
@@ -222,8 +222,8 @@ def test_the_page_can_be_mounted_in_an_application() -> None:
 
 
 @pytest.mark.parametrize(("path", "host"), [("/else", b"localhost"), ("/ws", b"evil.example")])
-def test_a_websocket_is_refused_on_a_server_without_denial_responses(path: str, host: bytes) -> None:
-    """Some servers, such as daphne, lack this ASGI extension."""
+def test_without_denial_responses_a_websocket_is_refused_by_closing_it(path: str, host: bytes) -> None:
+    """Some servers, e.g. daphne, lack this ASGI extension."""
     chat = webio.app(Agent(parrot, webio))
     sent: list[Any] = []
 
@@ -238,7 +238,7 @@ def test_a_websocket_is_refused_on_a_server_without_denial_responses(path: str, 
     assert [message["type"] for message in sent] == ["websocket.close"]
 
 
-def test_others_may_add_routes_behind_the_same_checks() -> None:
+def test_additional_routes_have_the_same_access_checks() -> None:
     from starlette.requests import Request
     from starlette.responses import PlainTextResponse
     from starlette.routing import Route
@@ -255,7 +255,7 @@ def test_others_may_add_routes_behind_the_same_checks() -> None:
 
 @pytest.fixture
 def ask(tmp_path: Path) -> Callable[[str], subprocess.CompletedProcess[str]]:
-    """Return a function that runs the example client of the protocol's page with a host."""
+    """Return a function that runs the example client of the protocol's page. It connects the client with a host."""
 
     def run(host: str) -> subprocess.CompletedProcess[str]:
         [client] = [block for block in blocks_in(PROTOCOL) if block.title == "ask.py"]
@@ -266,18 +266,18 @@ def ask(tmp_path: Path) -> Callable[[str], subprocess.CompletedProcess[str]]:
     return run
 
 
-def test_the_documented_client_is_answered(
+def test_the_documented_client_gets_an_answer(
     served: Served, ask: Callable[[str], subprocess.CompletedProcess[str]]
 ) -> None:
     said = ask(served.host).stdout.splitlines()
     assert "hi" in said
-    assert set(said) <= {"hi", "Hello!"}  # the greeting may come in between
+    assert set(said) <= {"hi", "Hello!"}  # the greeting may come first
 
 
 def test_the_documented_client_says_when_no_server_listens(
     ask: Callable[[str], subprocess.CompletedProcess[str]],
 ) -> None:
-    with socket.socket() as nobody:  # bound, but it does not listen
+    with socket.socket() as nobody:  # the port is bound, but nothing listens on it
         nobody.bind(("127.0.0.1", 0))
         done = ask(f"127.0.0.1:{nobody.getsockname()[1]}")
     assert done.returncode == 1

@@ -1,4 +1,4 @@
-"""The parts of a conversation other than its messages: writing, the agent's name, the reasons for its end."""
+"""Conversations: visitors who are writing, the agent's name, and the reasons for the end."""
 
 import asyncio
 
@@ -53,7 +53,7 @@ def now() -> float:
 
 
 @in_virtual_time
-async def test_only_the_agent_of_the_visitor_who_writes_notices_the_writing() -> None:
+async def test_only_the_visitors_own_agent_notices_that_they_are_writing() -> None:
     async with page(watcher) as app, Visit(app) as ada, Visit(app) as bob:
         await ada.hello()
         await bob.hello()
@@ -63,7 +63,7 @@ async def test_only_the_agent_of_the_visitor_who_writes_notices_the_writing() ->
 
 
 @in_virtual_time
-async def test_the_agent_talks_to_a_silent_visitor() -> None:
+async def test_a_bored_agent_speaks_to_a_silent_visitor() -> None:
     async with page(bored) as app, Visit(app) as visit:
         await visit.hello()
         assert await visit.messages(1) == ["agent: It is quiet here."]
@@ -71,7 +71,7 @@ async def test_the_agent_talks_to_a_silent_visitor() -> None:
 
 
 @in_virtual_time
-async def test_while_the_visitor_is_writing_the_agent_is_not_bored() -> None:
+async def test_the_agent_is_not_bored_while_the_visitor_is_writing() -> None:
     async with page(parrot, bored) as app, Visit(app) as visit:
         await visit.hello()
         await visit.messages(1)
@@ -90,7 +90,7 @@ async def test_while_the_visitor_is_writing_the_agent_is_not_bored() -> None:
 
 
 @in_virtual_time
-async def test_the_agent_talks_to_a_visitor_who_never_ends_a_line() -> None:
+async def test_the_agent_speaks_to_a_visitor_who_writes_but_never_sends_the_text() -> None:
     async with page(bored) as app, Visit(app) as visit:
         await visit.hello()
         await past(1.0)
@@ -100,7 +100,7 @@ async def test_the_agent_talks_to_a_visitor_who_never_ends_a_line() -> None:
 
 
 @in_virtual_time
-async def test_a_visitor_who_writes_after_the_farewell_is_not_heard() -> None:
+async def test_writing_after_the_farewell_is_ignored() -> None:
     async with page(watcher) as app, Visit(app) as visit:
         await visit.hello()
         visit.tell("bye")
@@ -109,7 +109,7 @@ async def test_a_visitor_who_writes_after_the_farewell_is_not_heard() -> None:
 
 
 @in_virtual_time
-async def test_a_visitor_who_speaks_after_the_farewell_learns_that_nobody_hears_them() -> None:
+async def test_a_text_after_the_farewell_gets_an_error() -> None:
     async with page(parrot) as app, Visit(app) as visit:
         await visit.hello()
         await visit.messages(1)
@@ -137,14 +137,15 @@ async def test_the_page_shows_the_agents_name_and_later_its_new_name() -> None:
         async with Visit(app) as again:
             assert (await again.hello(session=visit.session, last=2))["agent"] == "Elske"
             visit.tell("bye")
-            assert (await again.next())["type"] == "ended"  # the page has the name already, so no `renamed` comes first
+            assert (await again.next())["type"] == "ended"  # no `renamed` before it, because the welcome had the name
         async with Visit(app) as other:
             await other.hello()
-            assert await other.next() == {"type": "renamed", "agent": "Robin"}  # a conversation of its own
+            # Another conversation has its own name for the agent.
+            assert await other.next() == {"type": "renamed", "agent": "Robin"}
 
 
 @in_virtual_time
-async def test_a_name_that_is_found_later_is_shown_at_that_time_as_plain_text() -> None:
+async def test_a_name_that_the_agent_gets_later_is_shown_as_plain_text() -> None:
     async with page(late) as app, Visit(app) as visit:
         assert (await visit.hello())["agent"] == "Ravestate"
         assert await visit.next() == {"type": "renamed", "agent": "Robin"}
@@ -164,7 +165,7 @@ async def test_a_name_that_is_found_later_is_shown_at_that_time_as_plain_text() 
         ("\U0001f469\u200d\U0001f680 Valentina", "\U0001f469\u200d\U0001f680 Valentina"),
     ],
 )
-def test_any_name_of_the_agent_is_shown_as_a_name(name: str, shown: str) -> None:
+def test_any_name_of_the_agent_is_shown_in_a_readable_form(name: str, shown: str) -> None:
     @in_virtual_time
     async def test() -> None:
         async with page(parrot) as app, Visit(app) as visit:
@@ -193,7 +194,7 @@ async def test_the_setting_title_overrides_the_agents_own_name() -> None:
 
 
 @in_virtual_time
-async def test_on_leaving_the_visitor_reads_you_left_and_the_session_says_the_visitor_left() -> None:
+async def test_a_visitor_who_leaves_reads_you_left_and_others_the_visitor_left() -> None:
     async with page(parrot) as app, Visit(app) as visit, Visit(app) as window:
         await visit.hello()
         await window.hello(session=visit.session)
@@ -206,7 +207,7 @@ async def test_on_leaving_the_visitor_reads_you_left_and_the_session_says_the_vi
 
 
 @pytest.mark.parametrize("ending", [ending for ending in Ending if ending is not Ending.BYE])
-def test_the_visitor_reads_the_same_reason_as_others_unless_the_visitor_left(
+def test_for_all_other_endings_the_visitor_reads_the_same_reason_as_others(
     ending: Ending,
 ) -> None:
     assert ending.for_visitor == str(ending)

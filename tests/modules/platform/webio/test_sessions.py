@@ -1,4 +1,4 @@
-"""Conversations: separate from each other, resumed, kept for a while, ended cleanly, limited in number."""
+"""Conversations are separate, can be resumed, are kept for a while, end cleanly, and are limited in number."""
 
 import asyncio
 import logging
@@ -48,7 +48,7 @@ def _new_chronicle() -> None:
 
 
 @in_virtual_time
-async def test_two_visitors_have_conversations_of_their_own() -> None:
+async def test_two_visitors_have_separate_conversations() -> None:
     async with page() as app, Visit(app) as ada, Visit(app) as bob:
         await ada.hello(name="Ada")
         await bob.hello(name="Bob")
@@ -64,7 +64,7 @@ async def test_two_visitors_have_conversations_of_their_own() -> None:
 
 
 @in_virtual_time
-async def test_after_a_lost_connection_nothing_is_missing_and_nothing_comes_twice() -> None:
+async def test_after_a_lost_connection_each_message_arrives_exactly_once() -> None:
     async with page() as app:
         async with Visit(app) as first:
             await first.hello()
@@ -84,7 +84,7 @@ async def test_after_a_lost_connection_nothing_is_missing_and_nothing_comes_twic
 
 
 @in_virtual_time
-async def test_a_text_that_is_sent_twice_is_heard_once() -> None:
+async def test_a_text_that_is_sent_twice_is_heard_only_once() -> None:
     async with page() as app, Visit(app) as visit:
         await visit.hello()
         visit.say("one", id="a")
@@ -98,13 +98,13 @@ async def test_a_text_that_is_sent_twice_is_heard_once() -> None:
 
 
 @in_virtual_time
-async def test_a_visitor_learns_whether_their_text_was_taken() -> None:
+async def test_hear_returns_whether_the_conversation_accepts_the_text() -> None:
     async with page() as app, Visit(app) as visit:
         await visit.hello()
         await visit.messages(1)
         (session,) = app.state.sessions
         assert session.hear("a", "one")
-        assert session.hear("a", "one")  # it was taken
+        assert session.hear("a", "one")  # the same text again is accepted, too
         assert not session.leaving
         visit.tell("bye")
         await visit.frames("ended")
@@ -115,7 +115,7 @@ async def test_a_visitor_learns_whether_their_text_was_taken() -> None:
 
 
 @in_virtual_time
-async def test_all_windows_of_a_visitor_show_the_same() -> None:
+async def test_all_windows_of_a_visitor_show_the_same_messages() -> None:
     async with page() as app, Visit(app) as one, Visit(app) as other:
         await one.hello()
         await other.hello(session=one.session)
@@ -133,7 +133,7 @@ async def test_a_client_cannot_choose_the_id_of_a_new_conversation() -> None:
 
 
 @in_virtual_time
-async def test_a_client_that_claims_more_than_there_is_gets_everything() -> None:
+async def test_a_client_that_claims_a_message_number_from_the_future_gets_all_messages() -> None:
     async with page() as app, Visit(app) as visit:
         await visit.hello()
         await visit.messages(1)
@@ -153,7 +153,7 @@ async def test_a_conversation_is_kept_for_a_while_and_then_ends_cleanly() -> Non
         async with Visit(app) as again:
             assert (await again.hello(session=visit.session))["resumed"]
             await past(100.0)
-            assert chronicle == ["+Ada"]  # a window is still open
+            assert chronicle == ["+Ada"]  # the conversation is kept, because a window is open
         await past(59.9)
         assert chronicle == ["+Ada"]
         await past(1.0)
@@ -164,7 +164,7 @@ async def test_a_conversation_is_kept_for_a_while_and_then_ends_cleanly() -> Non
 
 
 @in_virtual_time
-async def test_a_visitor_who_leaves_for_good_hears_goodbye() -> None:
+async def test_a_visitor_who_leaves_gets_the_farewell_of_the_agent() -> None:
     async with page(parrot, keeper) as app, Visit(app) as visit:
         await visit.hello()
         visit.tell("bye")
@@ -177,7 +177,7 @@ async def test_a_visitor_who_leaves_for_good_hears_goodbye() -> None:
 
 
 @in_virtual_time
-async def test_all_visitors_get_a_message_when_the_page_is_closed() -> None:
+async def test_all_visitors_get_a_message_when_the_server_closes() -> None:
     async with page() as app, Visit(app) as one, Visit(app) as other:
         await one.hello()
         await other.hello()
@@ -191,7 +191,7 @@ async def test_all_visitors_get_a_message_when_the_page_is_closed() -> None:
 
 
 @in_virtual_time
-async def test_an_agent_that_leaves_ends_only_this_conversation() -> None:
+async def test_an_agent_that_leaves_ends_only_its_own_conversation() -> None:
     async with page(quitter) as app, Visit(app) as one, Visit(app) as other:
         await one.hello()
         await other.hello()
@@ -214,7 +214,7 @@ async def test_a_text_sent_while_the_conversation_ends_leaves_no_task_behind() -
 
 
 @in_virtual_time
-async def test_an_agent_that_fails_ends_this_conversation_and_says_so(
+async def test_the_failure_of_an_agent_ends_its_conversation_with_a_message(
     caplog: pytest.LogCaptureFixture,
 ) -> None:
     async with page(quitter) as app, Visit(app) as visit:
@@ -226,7 +226,7 @@ async def test_an_agent_that_fails_ends_this_conversation_and_says_so(
 
 
 @in_virtual_time
-async def test_beyond_the_limit_silent_abandoned_conversations_end_first() -> None:
+async def test_above_the_limit_abandoned_conversations_end_and_the_silent_ones_first() -> None:
     async with page(sessions=3) as app, Visit(app) as present:
         await present.hello()
         async with Visit(app) as talker:
@@ -265,7 +265,7 @@ async def test_the_number_of_windows_of_a_conversation_is_limited() -> None:
 
 
 @in_virtual_time
-async def test_conversations_that_have_ended_leave_nothing_behind() -> None:
+async def test_conversations_that_have_ended_leave_no_sessions_and_no_tasks() -> None:
     async with page(keep=0.0) as app:
         for _ in range(5):
             async with Visit(app) as visit:

@@ -1,4 +1,4 @@
-"""The interpreter has special settings while a page is served."""
+"""While a page is served, the Python interpreter has settings for a low latency."""
 
 import contextlib
 import gc
@@ -20,7 +20,7 @@ def setting() -> tuple[float, tuple[int, int, int]]:
 OURS = (pytest.approx(SWITCH), COLLECT)
 
 
-def test_the_settings_are_restored_when_the_last_body_ends() -> None:
+def test_the_settings_are_restored_when_the_last_context_manager_ends() -> None:
     before = setting()
     first, second = contextlib.ExitStack(), contextlib.ExitStack()
     first.enter_context(low_latency())

@@ -1,4 +1,7 @@
-"""A spoken conversation over the WebSocket: sound both ways, captions, the part that was heard, and mistakes of clients."""
+"""A spoken conversation over the WebSocket.
+
+The tests cover sound in both directions, captions, the words that the visitor heard, and mistakes of clients.
+"""
 
 import asyncio
 import contextlib
@@ -19,7 +22,7 @@ SPEECH = tone(1.0, rawio.IN_RATE)
 SILENCE = bytes(rawio.IN_RATE)  # half a second
 ANSWER = "I heard a sound, and that pleases me."
 LENGTH = len(ANSWER.split()) * WORD
-"""The seconds that the answer takes."""
+"""The time that the spoken answer takes (seconds)."""
 
 
 class Caller(Visit):
@@ -29,7 +32,7 @@ class Caller(Visit):
         super().__init__(app, **headers)
         self.stream = -1
         self.sound = 0
-        """The samples of the present stream that have come."""
+        """The number of samples received of the current stream."""
 
     async def call(self, **fields: Any) -> dict[str, Any]:
         """Say hello, and turn the microphone on."""
@@ -44,7 +47,7 @@ class Caller(Visit):
             self.send(sound[at : at + 1280])
 
     async def next(self) -> dict[str, Any]:
-        """Return the next frame; count sound on the way."""
+        """Return the next frame. Count the samples of sound."""
         frame = await super().next()
         if frame["type"] == "sound":
             self.sound += len(frame["sound"]) // 2
@@ -53,11 +56,11 @@ class Caller(Visit):
         return frame
 
     async def until(self, type: str) -> dict[str, Any]:
-        """Return the next frame of a type."""
+        """Return the next frame of a type. Skip other frames."""
         return (await self.frames(type))[-1]
 
     async def rest(self) -> list[dict[str, Any]]:
-        """Return the frames that have come since the last look."""
+        """Return the frames that have arrived and that the test has not read."""
         found: list[dict[str, Any]] = []
         while not self.nothing_more():
             found.append(await self.next())
@@ -70,7 +73,7 @@ class Caller(Visit):
 
 @contextlib.asynccontextmanager
 async def calling() -> AsyncGenerator[tuple[Starlette, Caller]]:
-    """A caller whose microphone is on."""
+    """Open a page with a caller whose microphone is on."""
     async with page(ears, story) as app, Caller(app) as caller:
         assert (await caller.call())["voice"] is True
         yield app, caller
@@ -86,7 +89,7 @@ def session_of(app: Starlette) -> Session:
 
 
 @in_virtual_time
-async def test_words_that_are_spoken_show_as_captions_then_as_a_message_before_the_answer() -> None:
+async def test_spoken_words_are_shown_as_captions_and_then_as_a_message() -> None:
     async with calling() as (_, caller):
         caller.speak()
         frames = await caller.frames("sound")
@@ -100,7 +103,7 @@ async def test_words_that_are_spoken_show_as_captions_then_as_a_message_before_t
 
 
 @in_virtual_time
-async def test_the_page_learns_each_time_that_the_agent_listens() -> None:
+async def test_the_page_gets_a_frame_each_time_the_agent_begins_to_listen() -> None:
     async with calling() as (_, caller):
         await caller.until("listening")
         caller.tell("microphone", on=False)
@@ -109,7 +112,7 @@ async def test_the_page_learns_each_time_that_the_agent_listens() -> None:
 
 
 @in_virtual_time
-async def test_the_answer_is_sent_ahead_of_the_loudspeaker_by_a_second_at_most() -> None:
+async def test_the_sound_is_sent_at_most_a_second_ahead_of_the_loudspeaker() -> None:
     async with calling() as (_, caller):
         caller.speak()
         for second in (1.0, 2.0, LENGTH):
@@ -122,7 +125,7 @@ async def test_the_answer_is_sent_ahead_of_the_loudspeaker_by_a_second_at_most()
 
 
 @in_virtual_time
-async def test_the_visitor_who_presses_stop_hears_no_more_and_the_message_says_what_they_heard() -> None:
+async def test_after_stop_no_sound_is_sent_and_the_message_has_the_heard_words() -> None:
     async with calling() as (_, caller):
         caller.speak()
         await caller.until("sound")
@@ -138,14 +141,14 @@ async def test_the_visitor_who_presses_stop_hears_no_more_and_the_message_says_w
         assert frames[-1] == {"type": "heard", "n": 2, "text": "I heard a"}
         await past(60.0)
         assert caller.sound == 0
-        async with Visit(caller._app) as other:  # a window that opens later learns it, too
+        async with Visit(caller._app) as other:  # a window that opens later gets the mark, too
             await other.hello(session=caller.session)
             assert (await other.frames("message"))[-1]["text"] == "a sound"
             assert (await other.next())["heard"] == "I heard a"
 
 
 @in_virtual_time
-async def test_an_answer_that_was_heard_to_its_end_has_no_mark() -> None:
+async def test_an_answer_that_was_heard_completely_is_not_marked() -> None:
     async with calling() as (app, caller):
         caller.speak()
         for second in (1.0, 2.0, LENGTH):
@@ -158,19 +161,19 @@ async def test_an_answer_that_was_heard_to_its_end_has_no_mark() -> None:
 
 
 @in_virtual_time
-async def test_a_visitor_who_types_gets_no_sound_and_no_mark() -> None:
+async def test_a_visitor_who_types_gets_no_sound_and_no_marks() -> None:
     async with page(ears, story) as app, Visit(app) as visit:
         assert (await visit.hello())["voice"] is True
         visit.say("words")
         assert await visit.messages(2) == ["user: words", "agent: I heard words, and that pleases me."]
         await past(60.0)
         assert visit.nothing_more()
-        assert session_of(app).context.read(rawio.sound) is None  # the visitor has no line for sound
-        visit.tell("hush")  # this is harmless without a line, too
+        assert session_of(app).context.read(rawio.sound) is None  # the visitor has no audio line
+        visit.tell("hush")  # without a line, this frame has no effect
 
 
 @in_virtual_time
-async def test_the_line_stays_for_half_a_minute_after_the_microphone_went_off() -> None:
+async def test_the_line_is_kept_for_half_a_minute_after_the_microphone_goes_off() -> None:
     async with calling() as (app, caller):
         context = session_of(app).context
         line = context.read(rawio.sound)
@@ -199,23 +202,23 @@ async def test_a_line_that_the_agent_closes_is_replaced_when_the_microphone_goes
 
 
 @in_virtual_time
-async def test_the_last_window_that_turns_its_microphone_on_has_the_sound() -> None:
+async def test_turning_the_microphone_on_in_a_window_turns_it_off_in_the_other() -> None:
     async with calling() as (app, caller), Caller(app) as second:
         await second.call(session=caller.session)
         assert await caller.until("taken") == {"type": "taken", "text": "the microphone is on in another window"}
-        caller.speak()  # is not heard
+        caller.speak()  # the agent does not hear this
         await past(5.0)
         assert session_of(app).history.last == 0
         second.speak()
         await second.until("sound")
         await past(0.0)
         types = [frame["type"] for frame in await caller.rest()]
-        assert types.count("message") == 2  # this window still gets the words
+        assert types.count("message") == 2  # this window still gets the messages
         assert "sound" not in types
 
 
 @in_virtual_time
-async def test_a_lost_connection_stops_the_sound_and_a_new_one_gets_the_later_sound() -> None:
+async def test_after_a_lost_connection_a_new_connection_gets_the_later_sound() -> None:
     async with calling() as (app, caller):
         caller.speak()
         await caller.until("sound")
@@ -231,7 +234,7 @@ async def test_a_lost_connection_stops_the_sound_and_a_new_one_gets_the_later_so
 
 
 @in_virtual_time
-async def test_the_microphone_goes_off_and_the_utterance_ends() -> None:
+async def test_an_utterance_ends_when_the_microphone_goes_off() -> None:
     async with calling() as (_, caller):
         caller.speak(SPEECH)
         caller.tell("microphone", on=False)
@@ -241,7 +244,7 @@ async def test_the_microphone_goes_off_and_the_utterance_ends() -> None:
 
 
 @in_virtual_time
-async def test_the_agent_may_say_goodbye_aloud() -> None:
+async def test_a_visitor_may_leave_while_the_agent_speaks() -> None:
     async with calling() as (app, caller):
         caller.speak()
         await caller.until("sound")
@@ -252,7 +255,7 @@ async def test_the_agent_may_say_goodbye_aloud() -> None:
 
 
 @in_virtual_time
-async def test_heard_words_belong_to_the_message_that_begins_with_them() -> None:
+async def test_the_heard_words_mark_the_message_that_begins_with_them() -> None:
     async with page() as app, Visit(app) as visit:
         await visit.hello()
         context = session_of(app).context
@@ -261,19 +264,19 @@ async def test_heard_words_belong_to_the_message_that_begins_with_them() -> None
         await visit.messages(5)
         for heard, frame in (
             ("one  two", {"n": 3, "text": "one two"}),
-            ("one two three", {"n": 3, "text": "one two  three"}),  # it was a false alarm, and the agent went on
-            ("", {"n": 5, "text": ""}),  # the user heard nothing of the newest message
+            ("one two three", {"n": 3, "text": "one two  three"}),  # after a false alarm, the agent has continued
+            ("", {"n": 5, "text": ""}),  # the visitor heard nothing of the newest message
         ):
             context.put(rawio.heard, heard)
             assert (await visit.frames("heard"))[-1] == {"type": "heard", **frame}
         context.put(rawio.heard, "nothing of the kind")
-        context.put(rawio.heard, "Hello!")  # the user heard the whole message, so it gets no mark
+        context.put(rawio.heard, "Hello!")  # the visitor heard the whole message, so it gets no mark
         await past(1.0)
         assert visit.nothing_more()
 
 
 @in_virtual_time
-async def test_heard_words_of_a_growing_utterance_mark_the_message_that_it_becomes() -> None:
+async def test_the_heard_words_of_a_growing_utterance_mark_its_later_message() -> None:
     async with page() as app, Visit(app) as visit:
         await visit.hello()
         await visit.messages(1)
@@ -287,7 +290,7 @@ async def test_heard_words_of_a_growing_utterance_mark_the_message_that_it_becom
 
 
 @in_virtual_time
-async def test_input_from_elsewhere_shows_as_the_visitors_words_and_typed_words_show_once() -> None:
+async def test_input_from_another_source_is_shown_as_a_message_and_typed_input_only_once() -> None:
     async with page() as app, Visit(app) as visit:
         await visit.hello()
         await visit.messages(1)
@@ -302,7 +305,7 @@ async def test_input_from_elsewhere_shows_as_the_visitors_words_and_typed_words_
 
 
 @in_virtual_time
-async def test_an_agent_without_ears_says_so_and_takes_no_sound() -> None:
+async def test_a_page_whose_agent_cannot_hear_answers_sound_frames_with_an_error() -> None:
     async with page() as app, Visit(app) as visit:
         assert "voice" not in await visit.hello()
         await visit.next()
@@ -326,7 +329,7 @@ async def test_sound_before_hello_ends_the_connection() -> None:
 
 
 @pytest.mark.parametrize("size", [1, 641, LONGEST_SOUND + 2])
-def test_frames_with_half_samples_or_too_many_are_refused(size: int) -> None:
+def test_sound_with_half_a_sample_or_too_many_samples_is_refused(size: int) -> None:
     @in_virtual_time
     async def test() -> None:
         async with calling() as (_, caller):
@@ -341,7 +344,7 @@ def test_frames_with_half_samples_or_too_many_are_refused(size: int) -> None:
 
 
 @in_virtual_time
-async def test_sound_beyond_the_speed_of_speech_is_ignored() -> None:
+async def test_sound_that_arrives_faster_than_real_time_is_ignored() -> None:
     async with calling() as (app, caller):
         for _ in range(1000):
             caller.send(bytes(LONGEST_SOUND))
@@ -350,12 +353,12 @@ async def test_sound_beyond_the_speed_of_speech_is_ignored() -> None:
         assert line is not None
         assert len(line._heard) <= 2 * LONGEST_SOUND
         await past(5.0)
-        caller.speak()  # it is heard again
+        caller.speak()  # the agent hears this again
         assert (await caller.until("message"))["text"] == "a sound"
 
 
 @in_virtual_time
-async def test_sound_and_reports_do_not_count_towards_the_limit_of_words() -> None:
+async def test_sound_and_reports_do_not_count_for_the_limit_of_texts() -> None:
     async with calling() as (_, caller):
         for _ in range(100):
             caller.send(bytes(640))
@@ -392,5 +395,5 @@ def test_only_the_page_of_an_agent_that_hears_may_use_the_microphone() -> None:
         with TestClient(webio.app(Agent(*modules, webio)), base_url="http://127.0.0.1:8420") as client:
             headers = client.get("/").headers
             assert allowed in headers["permissions-policy"]
-            assert "script-src 'self'" in headers["content-security-policy"]  # for the worklet, too
+            assert "script-src 'self'" in headers["content-security-policy"]  # which also allows the audio worklet
             assert client.get("/assets/worklet.js").status_code == 200

@@ -1,4 +1,4 @@
-"""Visitors of a page, for tests: clients that speak the protocol with the application in memory, in virtual time."""
+"""Visitors of a page, for tests: clients that speak the protocol with an application in memory and in virtual time."""
 
 import asyncio
 import contextlib
@@ -34,8 +34,7 @@ async def repeat(ctx: rs.RuleContext) -> None:
 
 
 def in_virtual_time(test: Callable[..., Coroutine[Any, Any, None]]) -> Callable[..., None]:
-    """Run an async test function on a loop in virtual time. If it waits for something that never comes, raise an
-    error."""
+    """Run an async test function in virtual time. A wait for an event that never comes raises an error."""
 
     @functools.wraps(test)
     def run(*arguments: Any, **named: Any) -> None:
@@ -46,7 +45,7 @@ def in_virtual_time(test: Callable[..., Coroutine[Any, Any, None]]) -> Callable[
 
 
 async def past(seconds: float) -> None:
-    """Let virtual time pass."""
+    """Wait for some seconds of virtual time."""
     loop = asyncio.get_running_loop()
     over = loop.create_future()
     loop.call_later(seconds, over.set_result, None)
@@ -55,14 +54,14 @@ async def past(seconds: float) -> None:
 
 @contextlib.asynccontextmanager
 async def page(*modules: Any, **settings: Any) -> AsyncGenerator[Starlette]:
-    """The page of an agent. Without modules, the agent repeats what it hears."""
+    """Run the page of an agent. Without modules, the agent repeats each input."""
     app = webio.app(Agent(*(modules or (parrot,)), webio, settings={"webio": settings}))
     async with app.router.lifespan_context(app):
         yield app
 
 
 class Visit:
-    """One WebSocket to an application: ``async with Visit(app) as visit``."""
+    """A WebSocket connection to an application: ``async with Visit(app) as visit``."""
 
     def __init__(self, app: Starlette, **headers: str) -> None:
         self._app = app
@@ -70,7 +69,7 @@ class Visit:
         self._in: asyncio.Queue[dict[str, Any]] = asyncio.Queue()
         self._out: asyncio.Queue[dict[str, Any]] = asyncio.Queue()
         self.reading = asyncio.Event()
-        """While this event is cleared, the client takes nothing, and the server waits in its `send`."""
+        """While this event is cleared, the client reads nothing, and the server waits in its `send`."""
         self.reading.set()
         self.accepted = False
         self.closed: int | None = None
@@ -110,7 +109,7 @@ class Visit:
         await self._task
 
     async def drop(self) -> None:
-        """Lose the connection."""
+        """Lose the connection, and wait until the server has noticed it."""
         self._in.put_nowait({"type": "websocket.disconnect", "code": 1006})
         await self.over()
 
@@ -121,19 +120,19 @@ class Visit:
             return
         if message["type"] == "websocket.close":
             self.closed = message["code"]
-        message.get("text", "").encode()  # as a server does
+        message.get("text", "").encode()  # a real server would encode the text
         self._out.put_nowait(message)
 
     def send(self, text: str | bytes) -> None:
-        """Send a message without changes."""
+        """Send a text or binary message as it is."""
         self._in.put_nowait({"type": "websocket.receive", "text" if isinstance(text, str) else "bytes": text})
 
     def tell(self, type: str, **fields: Any) -> None:
-        """Send a frame."""
+        """Send a frame with these fields."""
         self.send(json.dumps({"type": type, **fields}))
 
     def say(self, text: str, id: str | None = None) -> None:
-        """Say something."""
+        """Send a text of the visitor."""
         self._said += 1
         self.tell("say", id=id or f"{self.session[:8]}-{self._said}", text=text)
 
@@ -159,7 +158,7 @@ class Visit:
         return found
 
     async def messages(self, count: int) -> list[str]:
-        """Return the next messages, as "speaker: text", without other frames."""
+        """Return the next messages as "speaker: text". Skip other frames."""
         found: list[str] = []
         while len(found) < count:
             frame = await self.next()
@@ -168,5 +167,5 @@ class Visit:
         return found
 
     def nothing_more(self) -> bool:
-        """Return whether the test has read all frames that came."""
+        """Return whether the test has read all frames that have arrived."""
         return self._out.empty()
