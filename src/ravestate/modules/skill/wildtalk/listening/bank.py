@@ -21,6 +21,7 @@ from ravestate.language.reranker import Reranker
 
 from .moment import Line, Moment, roles_in
 from .suitability import Evidence
+from .tones import Tones
 
 LEAST = 0.74
 """The least similarity at which an entry is looked at more closely."""
@@ -73,6 +74,7 @@ class Bank:
             examples += own
         self.index = Nearest(examples, searched=len(self._of))
         self._judge = Reranker()
+        self._tones: Tones | None = None
         self._ranked = lru_cache(64)(self._rank)  # several rules ask about the same utterance
 
     def load(self) -> None:
@@ -83,6 +85,12 @@ class Bank:
         """
         self._judge.load()
         self.index.load()
+        examples = [text for one in self.moments for text in one.examples]
+        self._tones = Tones(examples, [self.moments[at].tone for at in self._of], self.index.vectors)
+
+    def tone(self, text: str) -> str:
+        """Return the tone of a text; empty if none is sure, and before `load`."""
+        return "" if self._tones is None else self._tones.tone(text)[0]
 
     def answering(self, question: str, lines: Sequence[Line], least: float = ANSWER) -> list[Line]:
         """Return the lines that may answer a question, the likeliest first. Before `load`, return all, in their order."""

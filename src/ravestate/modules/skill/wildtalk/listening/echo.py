@@ -1,7 +1,6 @@
 """The user's own words from the agent's view: *my dog bit me* becomes *your dog bit you*.
 
-A reply that takes up what was said fits nearly always. So the listener echoes a statement before it asks back, and a
-question before it admits that it does not know the answer.
+The listener echoes a question before it admits that it does not know the answer, and now and then a statement.
 """
 
 from __future__ import annotations
@@ -46,18 +45,12 @@ _OPINING = word_set("think guess suppose believe")
 _DENYING = word_set("not n't never nobody none nothing no cannot hardly barely")
 _IMAGINING = word_set("could should would might may maybe perhaps")
 """Words of a statement about something that may never happen."""
-_HELPING = word_set("have need get start begin stop keep let help seem forget")
-"""Verbs that say less than the verb that they govern."""
-_BESIDE = ("npadvmod", "compound", "poss")
-_WHERE = word_set("in on at by near behind under over between since during from")
 _BARE = word_set("be have do can will would want know like mean")
 """Verbs that say nothing without the words after them."""
 _WISHING = word_set("want plan hope intend wish like")
 """Verbs that make a plan of the verb that they govern."""
 _MOVING = word_set("go come move fly travel drive leave arrive visit meet start")
 """Verbs whose progressive form tells a plan: *we are flying to Rome*."""
-_LINKING = word_set("be feel seem look sound become get")
-_PARTICLES = word_set("up out off down over away back forward")
 _USUALLY = word_set("always usually often every sometimes never")
 """Words of a habit."""
 _INNER = ("relcl", "advcl", "acl", "appos", "conj", "cc", "prep", "punct", "ccomp")
@@ -72,16 +65,14 @@ class Told:
 
     echo: str
     """The statement from the agent's view, without a capital and a full stop: *your dog bit you*."""
-    verbs: tuple[str, ...] = ()
-    """The lemmas of its verbs and of an adjective, the most telling first; none for a statement without a verb."""
     subject: str = "thing"
     """``mine``, ``theirs`` (somebody else), ``thing``, ``yours`` (the agent), or ``piece`` for a statement without a verb."""
     tense: str = "now"
     """``past``, ``now``, ``plan``, ``might`` for what is only imagined, ``once`` for a habit of the past, or ``not`` if denied."""
     core: str = ""
     """The same as `echo` in at most `CORE` words; empty if it would be a fragment."""
-    nouns: tuple[str, ...] = ()
-    """The lemmas of its nouns."""
+    start: int = 0
+    """The number of its first word in the utterance."""
 
 
 def told_in(seen: Analysis, living: frozenset[str]) -> list[Told]:
@@ -186,7 +177,7 @@ def _clauses(tree: Tree, words: Sequence[Word], living: frozenset[str]) -> list[
 
 
 def _told(tree: Tree, verb: Word, living: frozenset[str], inside: set[int]) -> Told | None:
-    """Return the clause of a verb; None if it is no main clause, or too long."""
+    """Return the clause of a verb, without its words if they cannot be repeated; None if it is no main clause."""
     subjects = [word for word in tree.children(verb, *SUBJECTS, "expl") if word.index < verb.index]
     main = verb.dep == "ROOT" or (verb.dep == "conj" and tree.head(verb).dep == "ROOT")
     inner = [word for word in tree.children(verb, "ccomp") if tree.children(word, *SUBJECTS)]
@@ -194,6 +185,19 @@ def _told(tree: Tree, verb: Word, living: frozenset[str], inside: set[int]) -> T
         verb, subjects = inner[0], tree.children(inner[0], *SUBJECTS)
     if not main or verb.pos not in ("VERB", "AUX") or not subjects or subjects[0].low in QUESTION_WORDS:
         return None
+    subject = next((word for word in subjects if word.dep != "expl"), subjects[0])
+    words = _repeatable(tree, verb, subject, inside)
+    return Told(
+        echo(tree, words),
+        _person(tree, subject, living),
+        _tense(tree, verb, subjects),
+        core=_core(tree, verb, subjects, words) if words else "",
+        start=subjects[0].index,
+    )
+
+
+def _repeatable(tree: Tree, verb: Word, subject: Word, inside: set[int]) -> list[Word]:
+    """Return the words of a clause that can be repeated, without asides; none if the clause is too long, odd or about all."""
     for dropped in ((), (",",), ("advcl",), ("advcl", "npadvmod", "advmod", "prep")):
         words = _trimmed([word for word in _within(tree, verb, dropped) if word.index in inside])
         comma = next(
@@ -203,55 +207,35 @@ def _told(tree: Tree, verb: Word, living: frozenset[str], inside: set[int]) -> T
         if SHORTEST <= len(words) <= LONGEST and words[0].low not in QUESTION_WORDS:
             break
     else:
-        return None
-    subject = next((word for word in subjects if word.dep != "expl"), subjects[0])
+        return []
     if words[0].tag in ("MD", "VB") or _is_slip(tree, subject, verb) or _is_cut(tree, verb):
-        return None
+        return []
     if subject.low in _YOU and any(word.tag == "MD" for word in tree.children(verb)):
-        return None  # "you can talk there": anybody can
+        return []  # "you can talk there": anybody can
     if subject.low not in _YOU and any(_addresses(word, tree.before(word)) for word in words):
-        return None
+        return []
+    return words
+
+
+def _tense(tree: Tree, verb: Word, subjects: Sequence[Word]) -> str:
     chain = list(_chain(tree, verb))
-    plan = verb.lemma == "go" and verb.tag == "VBG" and len(chain) > 1
     helpers = {word.low for word in tree.children(verb, "aux", "auxpass")}
-    denied = any(word.low in _DENYING for word in (*tree.children(verb), *subjects))
-    tense = (
-        "not"
-        if denied
-        else "once"
-        if (verb.lemma == "use" and len(chain) > 1 and chain[1].tag == "VB")
-        or (verb.tag == "VBD" and _USUALLY & {word.low for word in words})
-        else "might"
-        if _IMAGINING & {word.low for word in tree.children(verb)}
-        else "plan"
-        if plan
-        or (verb.lemma in _MOVING and verb.tag == "VBG" and not helpers & {"was", "were", "been"})
-        or helpers & {"will", "'ll", "shall"}
-        or (verb.lemma in _WISHING and verb.tag != "VBD" and len(chain) > 1)
-        else "past"
-        if verb.tag in ("VBD", "VBN") or helpers & {"did", "had", "was", "were"}
-        else "now"
-    )
-    linked = tree.children(verb, "acomp", "attr", *(("advmod",) if verb.lemma in _LINKING else ()))
-    states = [word.lemma.lower() for word in (*linked, *tree.children_of(linked, "amod"))]
-    particles = [word.low for word in tree.children(verb, "prt", "advmod") if word.low in _PARTICLES]
-    states += [*(f"{verb.lemma.lower()} {word}" for word in particles), *particles]
-    states += ["name"] * bool(tree.children(verb, "oprd"))
-    if plan or (tense == "once" and verb.lemma == "use") or verb.lemma in _HELPING:
-        chain = chain[1:] or chain
-    elif verb.lemma not in _WISHING:
-        chain = chain[:1]
-    verbs = ["wish"] * (verb.lemma == "like" and not helpers.isdisjoint(("would", "'d")))
-    verbs += [word.lemma.lower() for word in chain]
-    inner = {word.index for clause in tree.children(verb, "ccomp") for word in tree.subtree(clause)}
-    return Told(
-        echo(tree, words),
-        tuple(states + verbs),
-        _person(tree, subject, living),
-        tense,
-        core=_core(tree, verb, subjects, words),
-        nouns=_nouns([word for word in words if word.index not in inner]),
-    )
+    beside = {word.low for word in tree.children(verb)}
+    if any(word.low in _DENYING for word in (*tree.children(verb), *subjects)):
+        return "not"
+    if verb.lemma == "use" and len(chain) > 1 and chain[1].tag == "VB":
+        return "once"
+    if verb.tag == "VBD" and _USUALLY & beside:
+        return "once"
+    if _IMAGINING & beside:
+        return "might"
+    moving = verb.lemma in _MOVING or (verb.lemma == "go" and len(chain) > 1)
+    wishing = verb.lemma in _WISHING and verb.tag != "VBD" and len(chain) > 1
+    if (moving and verb.tag == "VBG" and not helpers & {"was", "were", "been"}) or wishing:
+        return "plan"
+    if helpers & {"will", "'ll", "shall"}:
+        return "plan"
+    return "past" if verb.tag in ("VBD", "VBN") or helpers & {"did", "had", "was", "were"} else "now"
 
 
 def _is_cut(tree: Tree, verb: Word) -> bool:
@@ -282,18 +266,6 @@ def _lean(tree: Tree, word: Word) -> Iterator[Word]:
     for child in tree.children(word):
         if child.dep not in _INNER:
             yield from _lean(tree, child)
-
-
-def _nouns(words: Sequence[Word]) -> tuple[str, ...]:
-    """Return the lemmas of nouns, without those that only say when or where if there are others."""
-    kept = [word for word in words if word.pos in ("NOUN", "PROPN") and word.dep not in _BESIDE]
-    last = ""
-    told: list[Word] = []
-    for word in words:
-        last = word.low if word.pos == "ADP" else last
-        if word in kept and not (word.dep == "pobj" and last in _WHERE):
-            told.append(word)
-    return tuple(word.lemma.lower() for word in told or kept)
 
 
 def _is_slip(tree: Tree, subject: Word, verb: Word) -> bool:
@@ -341,4 +313,4 @@ def _fragment(tree: Tree, words: Sequence[Word]) -> Told | None:
     if not nominal or not SHORTEST <= len(kept) <= LONGEST or any(word.pos in ("VERB", "AUX") for word in kept):
         return None
     text = echo(tree, kept)
-    return Told(text, subject="piece", core=text if len(kept) <= CORE else "", nouns=_nouns(kept))
+    return Told(text, "piece", core=text if len(kept) <= CORE else "", start=kept[0].index)

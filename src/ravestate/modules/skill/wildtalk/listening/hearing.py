@@ -21,14 +21,13 @@ from ravestate.modules.meta.nlp.statement import Statement
 from .asked import Asked, asked_in, options_between
 from .asking import FEW_WORDS, SHORT, asking_sentence, kind_of
 from .bank import CLOSE, Found
-from .echo import Told, told_in
 from .following import follow_up_in, rest_of
 from .lookup import ALIKE, is_dark, near_in
 from .material import Material
 from .moment import Moment
 from .roles import Roles, has_verb, is_request, roles_of, turned
-from .state import State
-from .taking_up import weightiest
+from .state import LASTING, State
+from .taking_up import Taken, taken_from
 from .tongue import is_nonsense, is_number, tongue_of
 from .turns import is_leaving, turns_in
 
@@ -96,8 +95,12 @@ class Hearing:
     asked: Asked | None = None
     options: tuple[str, str] | None = None
     """The options that the user names."""
-    told: Told | None = None
+    taken: Taken | None = None
     """The statement that the agent can take up."""
+    tone: str = ""
+    """The tone of the utterance; empty if it is unknown."""
+    mood: str = ""
+    """The tone of the utterance, but sad as long as the talk is sad."""
     near: list[Found] = field(default_factory=list[Found])
     """The entries of the bank that resemble the utterance, the most suitable first."""
     follow_up: Moment | None = None
@@ -136,7 +139,7 @@ def _understand(found: Hearing, phrases: Material, heard: Heard, seen: Analysis,
     if state.said and state.shown and state.said[-1].endswith(state.shown[-1]):
         found.tags.add("shown")
     request = is_request(seen) and seen.question is None
-    found.told = None if asking or request else weightiest(told_in(seen, phrases.living), phrases.told)
+    found.taken = None if asking or request else taken_from(seen, phrases.living, state.before)
     found.options = options_between(seen.tree)
     found.asked = asked_in(phrases, seen, asking, state, found.moves, request=request)
     moment, sentence, score = moment_of(phrases, seen, found, asking)
@@ -159,6 +162,9 @@ def _understand(found: Hearing, phrases: Material, heard: Heard, seen: Analysis,
     found.sad = feeling is not None and feeling.tone == "sad"
     found.near = near_in(phrases, seen, asking, state, feeling)
     dark = is_dark(seen, found.near) or found.sad
+    found.tone = "sad" if dark else _tone(phrases, seen, found.moves, feeling)
+    grieving = state.tone == "sad" and (state.turns > LASTING or not _SAD.isdisjoint(seen.feelings) or found.tone == "")
+    found.mood = "sad" if grieving else found.tone
     nearest = found.near[0] if found.near else Found(0.0, 0.0, Moment("", {}), "")
     found.follow_up = follow_up_in(
         phrases.bank, state, seen, asking, nearest if nearest.fit >= ALIKE else None, dark=dark
@@ -213,8 +219,8 @@ def _understand(found: Hearing, phrases: Material, heard: Heard, seen: Analysis,
         "wording": found.asked is not None and found.asked.kind in ("repeat", "shorter", "say_word"),
         "guessed": state.moment == "guess" and not asking and "contradiction" not in seen.acts,
         found.asked.kind if found.asked else "": True,
-        "echoed": found.told is not None,
-        "addressed": found.told is not None and found.told.subject == "yours",
+        "echoed": found.taken is not None,
+        "addressed": found.taken is not None and found.taken.told.subject == "yours",
         "settled": len(found.moves) == 1,
         "broken": _is_broken(seen, size),
         **dict.fromkeys((*found.moves, *turns_in(seen.text, seen.sentences)), True),
@@ -225,8 +231,18 @@ def _understand(found: Hearing, phrases: Material, heard: Heard, seen: Analysis,
         tags |= _statement_tags(phrases, seen, statement, roles)
     found.tags |= {tag for tag, holds in tags.items() if holds}
     found.roles = roles.having(
-        called=called, told=found.told.core if found.told else "", **(found.asked.values if found.asked else {})
+        called=called,
+        told=found.taken.told.core if found.taken else "",
+        highlight=found.taken.highlight if found.taken else "",
+        **(found.asked.values if found.asked else {}),
     )
+
+
+def _tone(phrases: Material, seen: Analysis, moves: Sequence[str], feeling: Moment | None) -> str:
+    """Return the tone of an utterance that is not grave."""
+    if feeling is not None and feeling.tone:
+        return feeling.tone
+    return phrases.bank.tone(seen.text) or ("glad" if moves == ("rejoice",) else "")
 
 
 def likely(phrases: Material, seen: Analysis) -> tuple[str, ...]:

@@ -148,7 +148,7 @@ class Listener:
             return Answer(text, replace(after, before=heard.text, pending=None, moment=""))
         said = self._mended(heard, state, chance) or self._say(hearing, state, chance)
         game = None if state.game is None or is_leaving(heard.text) else state.game.beside(said.text)
-        ground = state.ground if hearing.told is None else hearing.told.echo
+        ground = (hearing.taken.told.echo if hearing.taken else "") or state.ground
         now = replace(said.state, before=heard.text, ground=ground, game=game, options=hearing.options or state.options)
         return replace(said, state=now)
 
@@ -222,12 +222,11 @@ class Listener:
             if line is None:
                 continue
             moment = source.moment
-            tone = "" if moment is None else moment.tone or "sad" * hearing.sad
-            after = state.toned(tone, moment.lasts) if moment is not None else state.toned("")
+            tone = hearing.tone if moment is None else moment.tone or "sad" * hearing.sad
+            after = state.toned(tone, LASTING if moment is None else moment.lasts)
             after = replace(
                 after,
                 being=roles.being or state.being,
-                earlier=_earlier(roles.being, state),
                 moment=(source.asked or ("",))[0] if moment is None else moment.name,
             )
             after = self._threaded(after)
@@ -310,17 +309,10 @@ class Listener:
             yield _Source(asked.lines(self._phrases, state.tone, hearing.asking), asked=about)
 
     def _echo(self, hearing: Hearing, state: State, chance: random.Random) -> Iterator[_Source]:
-        """Yield the user's statement from the agent's view, with a question of its kind, or with a sign of interest."""
-        told, kinds = hearing.told, self._phrases.told
-        if told is None:
-            return
-        grieving = state.tone == "sad" and (state.turns > LASTING or bool(hearing.tags & {"sorry"}))
-        mood = "sad" if grieving or "dark" in hearing.tags else "glad" if hearing.moves == ("rejoice",) else ""
-        earlier = state.earlier if state.earlier != hearing.roles.being else None
-        if earlier is not None:
-            hearing.roles = hearing.roles.having(earlier=earlier.text)
-        for groups, moment in replies(told, kinds, mood, state, chance, earlier):
-            yield _Source(groups, moment)
+        """Yield replies that take up the user's statement, with its highlight."""
+        if hearing.taken is not None:
+            for groups in replies(hearing.taken, self._phrases.taking_up, hearing.mood, state, chance):
+                yield _Source(groups)
 
     def _move(self, hearing: Hearing, state: State, chance: random.Random) -> Iterator[_Source]:
         """Yield the replies of the likely move. If two moves are likely, yield replies that suit both."""
@@ -345,15 +337,6 @@ class Listener:
             yield _Source([[stances.groups["as_before"][STANCES.index(before)]]])
         stance = "curious" if roles.being is not None else chance.choices(STANCES, (5, 3, 2))[0]
         yield _Source(stances.lines(before or stance), stance=before or stance)
-
-
-def _earlier(being: Being | None, state: State) -> Being | None:
-    """Return the person to whom the listener may lead back: the one before the last being; nobody in a sad talk."""
-    last = state.being
-    changes = being is not None and last is not None and last.text != being.text
-    if changes and last is not None and not (last.plural or last.kind == "pet" or state.tone == "sad"):
-        return last
-    return state.earlier
 
 
 def _said_lately(template: str, text: str, state: State) -> bool:

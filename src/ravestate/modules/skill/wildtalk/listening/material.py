@@ -59,8 +59,8 @@ class Material:
         self.area_by_word = {word: one.name for one in reversed(self.areas.values()) for word in one.words}
         self.picks: Mapping[str, Sequence[str]] = _read("picks")
         self.plain = {**_moments("plain"), **self.replies}
-        self.told = _moments("told")
-        """Kinds of statements, with questions that take them up."""
+        self.taking_up = _moments("taking_up")
+        """Frames, questions and remarks that take up a statement."""
         self.order = [_row(row) for row in _read("order")]
         self.shows: Mapping[str, Any] = _read("shows")
         self.tongues = {name: frozenset[str](words) for name, words in _read("tongues").items()}

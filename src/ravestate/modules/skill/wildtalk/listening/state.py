@@ -91,8 +91,6 @@ class State:
     """The number of answers since an entry of the bank gave one."""
     pending: Pending | None = None
     being: Being | None = None
-    earlier: Being | None = None
-    """The person who was mentioned before `being`."""
     tone: str = ""
     turns: int = 0
     """The number of turns for which the tone still lasts."""

@@ -1,109 +1,115 @@
-"""Replies that take up a statement: a remark or a question of its kind (told.yaml), seldom with its echo."""
+"""Replies that take up a statement: its highlight, and a remark or a question that suits its tense and its mood."""
 
 from __future__ import annotations
 
 import random
 from collections.abc import Iterator, Mapping, Sequence
-from dataclasses import replace
+from dataclasses import dataclass, replace
 
-from .echo import Told
+from ravestate.modules.meta.nlp.analysis import Analysis
+
+from .echo import Told, told_in, words_of
+from .highlight import highlight_in
 from .moment import Line, Moment
-from .state import Being, State
+from .state import State
 
-LATELY = 3
-"""The number of answers without an echo before the next one."""
-LINKED = 6
-"""The number of answers before the listener leads back to somebody again."""
-WEIGHTS = {"past": 3.0, "once": 3.0, "plan": 2.5, "not": 2.0, "might": 2.0, "now": 2.0}
-"""The weight of a statement of no kind, by its tense: events count more than plans, and plans more than descriptions."""
-OWN = ("once", "not", "might")
+OWN = ("once", "not", "might", "plan")
 """Tenses to which only groups of their own reply."""
 
 Groups = list[Sequence[Line]]
 
 
-def weightiest(told: Sequence[Told], kinds: Mapping[str, Moment]) -> Told | None:
-    """Return the statement that matters most: a feeling before an event, a plan, a description and a side remark.
+@dataclass(frozen=True, slots=True)
+class Taken:
+    """What the listener takes up of an utterance."""
 
-    Among equals, a statement about people and the later one count more.
+    told: Told
+    """The statement with the highlight; without one, the last statement."""
+    highlight: str = ""
+    """The phrase that says most, from the agent's view; empty if none stands out."""
+
+
+def taken_from(seen: Analysis, living: frozenset[str], known: str) -> Taken | None:
+    """Return what the listener can take up; None if the utterance tells nothing.
+
+    Args:
+        seen: The analysis of the utterance.
+        living: The lemmas of nouns for living beings.
+        known: The user's words before; they are no news.
     """
-    return max(told, key=lambda one: (_weight(one, kinds), one.subject in ("mine", "theirs")), default=None)
+    statements = [one for one in seen.sentences if not one.rstrip().endswith("?")]
+    told = sorted(told_in(seen, living), key=lambda one: one.start)
+    words = {word.index: word for one in statements for word in words_of(seen.tree, one)}
+    best = highlight_in(seen, [words[place] for place in sorted(words)], known)
+    if best is None:
+        return Taken(told[-1]) if told else None
+    near = next((one for one in reversed(told) if one.start <= best.start), told[0] if told else Told("", "piece"))
+    return Taken(near, best.text)
+
+
+OFTEN = 0.4
+"""The share of questions among the replies to a statement."""
+ASKING = {"sad": 0.2, "angry": 0.35, "tired": 0.2}
+"""The same in a mood in which questions are a burden."""
+UNREPEATED = 12
+"""The number of answers for which a question or a remark is not said again."""
+ECHOED = 4
+"""The least number of answers between two echoes of a whole statement."""
 
 
 def replies(
-    told: Told, kinds: Mapping[str, Moment], mood: str, state: State, chance: random.Random, earlier: Being | None
-) -> Iterator[tuple[Groups, Moment | None]]:
-    """Yield groups of replies: questions, then remarks. A kind of sad statement comes along, for its tone.
+    taken: Taken, lines: Mapping[str, Moment], mood: str, state: State, chance: random.Random
+) -> Iterator[Groups]:
+    """Yield groups of replies: a question or a remark, then the other.
 
     Args:
-        told: The statement.
-        kinds: The kinds of statements, with their replies.
-        mood: ``sad``, ``glad`` or empty.
+        taken: The statement and its highlight.
+        lines: The authored lines of taking_up.yaml.
+        mood: ``sad``, ``angry``, ``glad``, ``tired``, or empty.
         state: The state of the talk.
         chance: The source of random choices.
-        earlier: Somebody whom the user mentioned before.
     """
-    names = _names(told, mood)
-    kind = kind_of(told, kinds, mood)
-    own = kind.lines(*_names(told, "" if kind.tone == mood else mood)) if kind else []
-    general = kinds["any"].lines(*(["glad"] if mood == "glad" else names))
-    front = _front(told, kinds, mood, state, chance, own=bool(own))
-    sad = kind if kind is not None and kind.tone == "sad" else None
-    if earlier is not None and told.subject == "mine" and not mood and _may_link(state) and chance.random() < 0.3:
-        yield _framed(kinds["links"].lines(earlier.kind), "", state), sad
-    yield _framed([*own, *general], front, state), sad
-    notes = ["glad"] if mood == "glad" else ["sad"] if mood else names
-    yield _framed(kinds["notes"].lines(*notes), "", state), sad
-
-
-def kind_of(told: Told, kinds: Mapping[str, Moment], mood: str = "") -> Moment | None:
-    """Return the weightiest kind that suits a statement, and has replies for its person, its tense and the mood."""
-    verbs, nouns = set(told.verbs), set(told.nouns)
-    suiting = [
-        one
-        for one in kinds.values()
-        if one.words and (not one.verbs or one.verbs & verbs) and (not one.nouns or one.nouns & nouns)
-    ]
-    fit = [one for one in suiting if one.lines(*_names(told, "" if mood and one.tone == mood else mood))]
-    return max(fit, key=lambda one: one.weight, default=None)
-
-
-def _weight(told: Told, kinds: Mapping[str, Moment]) -> float:
-    if told.subject == "piece":
-        return 0.0
-    kind = kind_of(told, kinds)
-    return kind.weight if kind is not None and kind.weight else WEIGHTS[told.tense]
+    names = _names(taken.told, mood)
+    front = _front(taken, lines, mood, state, chance)
+    kinds = ["questions", "remarks" if taken.highlight else "plainly"]
+    if chance.random() >= ASKING.get(mood, OFTEN):
+        kinds.reverse()
+    for kind in kinds:
+        yield _framed(lines[kind].lines(*names), front, state)
+    if front.text:  # all lines were said lately
+        yield [[front]]
 
 
 def _names(told: Told, mood: str) -> list[str]:
     """Return the names of the groups that reply to a statement, the most specific first."""
-    names = [f"{told.subject} {told.tense}", *([] if told.tense in OWN else [told.subject, "say"])]
-    return [*(f"sad {name}" for name in names), "sad"] if mood == "sad" else [] if mood else names
+    if mood:
+        return [f"{mood} {told.tense}", f"{mood} {told.subject}", mood]
+    if told.tense in OWN:
+        return [f"{told.subject} {told.tense}", told.tense]
+    return [f"{told.subject} {told.tense}", told.tense, told.subject, "say"]
 
 
-def _may_link(state: State) -> bool:
-    return len(state.said) > LATELY and not any("{earlier}" in text for text in state.recent[-LINKED:])
+def _front(taken: Taken, lines: Mapping[str, Moment], mood: str, state: State, chance: random.Random) -> Line:
+    """Return a frame with the highlight or, now and then, with a short statement; an empty line if there is neither."""
+    told = taken.told
+    lately = any("{told}" in text.lower() for text in state.recent[-ECHOED:])
+    if taken.highlight:
+        frames = lines["frames"].lines(mood, told.tense, told.subject, "say")[0]
+    elif told.core and not lately:
+        frames = lines["echoes"].lines(mood, "say")[0]
+    else:
+        return Line("", frozenset())
+    fresh = [line for line in frames if not any(text.startswith(line.text) for text in state.recent[-3:])]
+    return chance.choice(fresh or frames)
 
 
-def _front(
-    told: Told, kinds: Mapping[str, Moment], mood: str, state: State, chance: random.Random, *, own: bool
-) -> str:
-    """Return a frame for the echo; empty if none may come: the user only answers, or the reply is clear without it."""
-    lately = any("{told}" in text.lower() for text in state.recent[-LATELY:])
-    if own or lately or not told.core or state.pending is not None:
-        return ""
-    frames = kinds["frames"].lines(mood, "piece" if told.subject == "piece" else "say")[0]
-    return f"{chance.choice(frames).text} "
-
-
-def _framed(groups: Sequence[Sequence[Line]], front: str, state: State) -> Groups:
+def _framed(groups: Sequence[Sequence[Line]], front: Line, state: State) -> Groups:
     """Return phrases with the frame before them, without the phrases that ended a recent answer."""
-    roles = {"told"} if front else set[str]()
     return [
         [
-            replace(line, text=front + line.text, roles=line.roles | roles)
+            replace(line, text=f"{front.text} {line.text}".strip(), roles=line.roles | front.roles)
             for line in lines
-            if not any(text.endswith(line.text) for text in state.recent)
+            if not any(text.endswith(line.text) for text in state.recent[-UNREPEATED:])
         ]
         for lines in groups
     ]

@@ -1,0 +1,178 @@
+"""The highlight of an utterance: the phrase that says most, from the agent's view.
+
+*The wife packed me egg sandwiches again* has the highlight *egg sandwiches*. A listener who repeats it has plainly
+listened, and misses nothing. Each word carries information: the negative logarithm of its frequency in English (its
+self-information). The highlight is the noun phrase, with its prepositions, whose words carry most.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Iterator, Sequence
+from dataclasses import dataclass
+
+from ravestate.language.contractions import word_set
+from ravestate.language.lexicon import Lexicon, loaded_lexicon
+from ravestate.modules.meta.nlp.analysis import Analysis
+from ravestate.modules.meta.nlp.tree import SUBJECTS, Tree, Word
+
+from .echo import echo
+
+LONGEST = 8
+"""The maximum number of words of a highlight."""
+SUBTITLES = 1.6e9
+"""The number of words behind the frequencies of `Lexicon`."""
+DULL = 7.5
+"""The information, in nats, that a word must exceed to count. *Time* and *thing* have less, *sock* has 11."""
+UNKNOWN = 13.5
+"""The most that a word counts, in nats. Names and unknown words may be slips, so they count no more."""
+LEAST = 2.5
+"""The least information of a highlight, in nats above `DULL`."""
+KNOWN_LEAST = 5.0
+"""The same for *the timer* and *my teeth*: such things are mostly mentioned in passing."""
+NUMBER = 3.0
+"""The information of a number beside a noun, in nats above `DULL`: *fourteen years*."""
+LATER, SUBJECT, KNOWN = 1.25, 0.55, 0.4
+"""Factors: the last clause holds the point, a subject is mostly known already, and so is a word that was said before."""
+
+_EMPTY = word_set(
+    "thing things stuff lot lots bit kind sort way time times day days one ones something anything nothing everything"
+    " someone somebody anyone anybody everyone everybody nobody guy guys people today tomorrow yesterday tonight morning"
+    " afternoon evening night week weeks month months year years moment minute minutes hour hours monday tuesday wednesday"
+    " thursday friday saturday sunday january february march april june july august september october november december"
+    " easter christmas row mate bro dude dear robot bot buddy pal goodnight bye goodbye hello hi name names rest end part side place point case fact reason idea matter lol haha ok okay"
+)
+"""Nouns that name nothing, or only a time."""
+_TIMES = word_set("monday tuesday wednesday thursday friday saturday sunday today yesterday tomorrow tonight")
+_LEFT = ("det", "amod", "compound", "nummod", "poss", "case", "nmod", "quantmod", "predet", "advmod")
+_DEFINITE = word_set("the my our your his her its their it's")
+_PLACES = ("GPE", "LOC", "FAC", "EVENT", "PRODUCT", "WORK_OF_ART", "NORP")
+"""Kinds of names that may be a highlight."""
+_PRONOUNS = word_set("mine yours his hers ours theirs")
+_DROPPED = word_set("some any no another such what which whatever every each")
+"""Determiners that do not stand well at the beginning of an exclamation."""
+_VAGUE = word_set("about of for as like than with")
+"""Prepositions that a highlight does not begin with."""
+_DENYING = word_set("not n't never no nobody hardly without")
+_IMAGINING = word_set("if unless whether would could might should")
+
+
+@dataclass(frozen=True, slots=True)
+class Highlight:
+    """A phrase of the user."""
+
+    text: str
+    """The phrase from the agent's view, without a capital: *half your moustache*."""
+    information: float
+    """Its information, in nats above that of dull words."""
+    start: int
+    """The number of its noun in the utterance."""
+
+
+def highlight_in(seen: Analysis, words: Sequence[Word], known: str = "") -> Highlight | None:
+    """Return the highlight of some words of an utterance; None if nothing in them stands out.
+
+    Args:
+        seen: The analysis of the utterance.
+        words: The words of its statements.
+        known: What was said before; its words count less.
+    """
+    lexicon, tree = loaded_lexicon(), seen.tree
+    before = set(known.lower().split())
+    inside = {word.index for word in words}
+    named = [entity.text.lower().split() for entity in seen.entities if entity.label in _PLACES]
+    places = {word.index for word in words if any(word.low in name for name in named)}
+    found: list[Highlight] = []
+    for place, noun in enumerate(words):
+        if not _stands_out(tree, noun, places):
+            continue
+        for phrase in _phrases(tree, noun, inside):
+            if len(phrase) > LONGEST or any(word.pos == "PUNCT" and word.text not in "-’'" for word in phrase):
+                continue
+            told = _information(lexicon, phrase, before)
+            told *= 1 + (LATER - 1) * place / len(words)
+            told *= SUBJECT if noun.dep in SUBJECTS else 1.0
+            text = echo(tree, phrase)
+            plainly = phrase[0].low in _DEFINITE and not any(word.pos in ("ADJ", "NUM", "ADP") for word in phrase)
+            if told >= (KNOWN_LEAST if plainly else LEAST) and text:
+                found.append(Highlight(text, told, noun.index))
+    return max(found, key=lambda one: one.information, default=None)
+
+
+def _stands_out(tree: Tree, noun: Word, places: set[int]) -> bool:
+    """Return whether a word can be the noun of a highlight: it is asserted, and names something."""
+    if noun.pos not in ("NOUN", "PROPN") or len(noun.low) < 3:
+        return False
+    counted = any(word.low not in ("one", "1") for word in tree.children(noun, "nummod"))
+    if not counted and not _EMPTY.isdisjoint((noun.low, noun.lemma.lower())):
+        return False
+    if noun.dep in ("compound", "npadvmod", "intj", "nmod", "vocative"):
+        return False
+    if noun.pos == "PROPN" and noun.index not in places:
+        return False  # a person's name alone is no highlight
+    if {word.low for word in tree.children(noun)} & {"no", "any", "what", "which"}:
+        return False
+    for above in tree.ancestors(noun):
+        helpers = {word.low for word in tree.children(above)}
+        if helpers & (_DENYING | _IMAGINING):
+            return False
+        if above.dep in ("ROOT", "conj", "ccomp"):
+            break
+    return True
+
+
+def _phrases(tree: Tree, noun: Word, inside: set[int]) -> Iterator[list[Word]]:
+    """Yield the phrases of a noun: with its own words, then also with the phrases right behind it."""
+    left = [word for word in tree.subtree(noun) if word.index < noun.index and _belongs(tree, word, noun)]
+    while left and (left[0].low in _DROPPED or left[0].pos in ("CCONJ", "PUNCT", "INTJ")):
+        left.pop(0)
+    core = [*left, noun]
+    if [word.index for word in core] != list(range(core[0].index, noun.index + 1)) or core[0].low in _PRONOUNS:
+        return
+    head = tree.head(noun)
+    if noun.dep == "pobj" and head.index == core[0].index - 1 and head.low not in _VAGUE and head.index in inside:
+        core = [head, *core]
+    yield core
+    grown = list(core)
+    for _ in range(2):
+        after = next((word for word in tree.words if word.index == grown[-1].index + 1), None)
+        if after is None or after.index not in inside:
+            return
+        if after.pos == "ADP" and after.dep in ("prep", "agent") and not tree.children(after, "pcomp"):
+            more = tree.subtree(after)
+        elif (after.low in ("again", "too") or (after.low == "of" and after.dep == "prep")) and after.pos != "VERB":
+            more = [after]
+        else:
+            clause = next((one for one in tree.children(noun, "relcl") if tree.subtree(one)[0] is after), None)
+            if clause is None or len(tree.subtree(clause)) > 4:
+                return
+            more = tree.subtree(clause)
+        nouns = [word for word in more if word.pos in ("NOUN", "PROPN", "PRON", "NUM")]
+        if len(grown) + len(more) > LONGEST or (more[0].pos == "ADP" and (not nouns or nouns[-1].low in _TIMES)):
+            return
+        if [word.index for word in more] != list(range(grown[-1].index + 1, grown[-1].index + 1 + len(more))):
+            return
+        grown = [*grown, *more]
+        yield list(grown)
+
+
+def _belongs(tree: Tree, word: Word, noun: Word) -> bool:
+    while word.index != noun.index:
+        if word.dep not in _LEFT:
+            return False
+        word = tree.head(word)
+    return True
+
+
+def _information(lexicon: Lexicon | None, phrase: Sequence[Word], before: set[str]) -> float:
+    total = 0.0
+    for word in phrase:
+        if word.pos == "NUM":
+            total += NUMBER
+        if word.pos not in ("NOUN", "PROPN", "ADJ", "VERB", "ADV") or word.low in _EMPTY:
+            continue
+        count = max(lexicon.count(word.low), lexicon.count(word.lemma.lower())) if lexicon is not None else 0
+        nats = min(UNKNOWN, -math.log(max(count, 1) / SUBTITLES))
+        weight = KNOWN if word.low in before else 1.0
+        total += max(0.0, nats - DULL) * weight * (1.0 if word.pos in ("NOUN", "PROPN", "ADJ") else 0.5)
+    return total
