@@ -21,7 +21,7 @@ __all__ = ["UsageError", "main", "script"]
 COMMANDS = {
     "chat": "talk with the complete agent on the console",
     "run": "run an agent from modules or an agent file",
-    "board": "talk with an agent on a web page and look inside it, or look at a recorded trace",
+    "board": "talk with an agent on a web page beside its debugger, or open a recorded trace",
     "check": "print an agent's faults, and findings such as ties, endless loops and undeclared writes",
     "graph": "draw the Signal-Rule-Slot diagram of the complete agent or of another agent",
     "nlp": "show what the agent sees in a text: words, names, triples, yes or no, signals",

@@ -181,7 +181,7 @@ class RulePlan:
     readable: frozenset[int] = frozenset()
     """The numbers of the slots that the rule reads or writes."""
     views: tuple[SlotPlan, ...] = ()
-    """The same slots, in the same order."""
+    """The records of the slots in `readable`."""
     emits: frozenset[int] = frozenset()
     """The numbers of the signals that the rule declares in ``emits``."""
     raises: tuple[int, ...] = ()
