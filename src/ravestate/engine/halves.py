@@ -1,9 +1,9 @@
 """Halves: first spikes that wait, without an activation, for a second spike.
 
-A clause with two constraints, its *needs*, takes two spikes. A *half* (`Half`) groups needs for the same signal that
-the engine can treat alike. A thousand rules `input & topic` would need a thousand activations for each input, although
-only a few of the topics occur. So the half holds the first spike as an *entry* in a table (``entries.py``), without
-activations.
+A clause with two constraints, its *needs*, takes two spikes. A *half* (`Half`) is a group of needs for the same signal,
+all of which the engine can treat alike. A thousand rules `input & topic` would need a thousand activations for each
+input, although only a few of the topics occur. So the half holds the first spike as an *entry* in a table
+(``entries.py``), without activations.
 
 The engine makes activations when the second spike, the *counterpart*, arrives. If many first spikes wait for it, the
 number of activations depends on the rule:
@@ -252,7 +252,8 @@ class Halves:
         return found
 
     def _inherit_pressure(self, spike: Spike, half: Half, group: Group) -> None:
-        """If the stand-by of a clause was under pressure, create its activation, and put that under pressure."""
+        """If the stand-by of a clause was under pressure, create its activation, and put the activation under
+        pressure."""
         for number in group.patience_ends or ():
             clause = self.state.policy.clause_plans[number]
             place = half.places.get(clause.rule.index)
