@@ -30,7 +30,7 @@ COMMANDS = {
     "genqa": "read documents, and answer questions from them",
     "voice": "check the devices and models for speech, transcribe, speak, hold a conversation with a recording",
     "vision": "say whose faces are in pictures, learn a face, check the camera",
-    "activity": "name the activity that somebody performs in a video, teach an activity",
+    "activity": "name the activity that a person performs in a video, teach an activity",
     "ros": "check an agent's topics and services, list the network's topics, show a topic's messages",
     "robot": "start a stand-in robot with a face on a web page, alone or with an agent behind it",
     "new": "write a small project to start from",

@@ -221,7 +221,7 @@ def _memory(settings: Any, *, make: bool) -> Generator[Memory | None]:
 
     path = path_of(settings)
     if path is not None and not path.exists() and not make:
-        print(f"ravestate vision: there is no memory in {path}, so nobody is known", file=sys.stderr)
+        print(f"ravestate vision: there is no memory in {path}, so no face is known", file=sys.stderr)
         yield None
         return
     memory = open_memory(settings)
