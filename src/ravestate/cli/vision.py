@@ -172,7 +172,7 @@ def _learn(options: argparse.Namespace, settings: dict[str, Any]) -> int:
         person = _person(memory, name)
         other = memory.together(lambda graph: people.nearest(graph, vectors[0][1], vision.threshold)).result()
         if other is not None and other.person.id != person.id and _shown(other.person).casefold() != name.casefold():
-            # Under two names, the agent would recognise neither.
+            # If one face had two names, the agent would recognise neither person.
             raise RavestateError(
                 f"nothing was learnt: memory knows this face as {_shown(other.person)} (distance {other.distance:.3f}). If that "
                 "is wrong, remove it first: ravestate memory forget NAME"

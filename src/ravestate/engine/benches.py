@@ -113,7 +113,7 @@ class Benches:
         self._lead(bench, partner)
 
     def _move(self, bench: Bench) -> None:
-        """Give a bench the oldest live counterpart that fits (L12). If none fits, its spikes wait for the next one."""
+        """Give a bench the oldest live counterpart that fits (L12). If none fits, the bench waits for the next."""
         state, half = self.state, bench.half
         self.holdings.entries.vacate(bench)
         need = other_need(half.needs[0])

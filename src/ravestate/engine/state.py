@@ -129,8 +129,8 @@ class State(Memory):
         """The counterparts of benches whose heads may have gone."""
         self.patience_ends: dict[Spike, dict[Half, list[tuple[int, float]]]] = NOTHING
         """Spike → half that holds the spike → pairs of a count and a time (seconds). The count says how many of the
-        half's best clauses are under pressure. Each count includes the clauses of earlier pairs; the time is the end of
-        the patience of those that it adds (L16)."""
+        half's best clauses are under pressure, including the clauses of earlier pairs. The time is the end of the
+        patience of the clauses that the pair adds (L16)."""
         self.gated: dict[Activation, None] = NOTHING
         """Activations that hold all their spikes, but have a slot predicate that is false."""
         self.free = Free()

@@ -154,7 +154,8 @@ class Least:
     def _lacking(self, lacking: int, before: int, found: int) -> int:
         """Return the open signals of the set `found` that lack an alternative there.
 
-        `before` is the set before the last addition. `lacking` has the signals of `before` that may lack one.
+        `before` is the set before the last addition. `lacking` has the signals of `before` that may lack an
+        alternative.
         """
         new = found & ~before
         left = lacking | new & self._open
