@@ -175,7 +175,7 @@ def _learn(options: argparse.Namespace, settings: dict[str, Any]) -> int:
             # If one face had two names, the agent would recognise neither person.
             raise RavestateError(
                 f"nothing was learnt: memory knows this face as {_shown(other.person)} (distance {other.distance:.3f}). If that "
-                "is wrong, remove it first: ravestate memory forget NAME"
+                "is wrong, first run: ravestate memory forget NAME"
             )
         _, filed = memory.together(lambda graph: people.keep(graph, person, vectors, vision.most)).result()
     print(f"learnt {filed} view{'' if filed == 1 else 's'} of {name}")
