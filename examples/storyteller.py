@@ -1,8 +1,8 @@
 """A storyteller that listeners can interrupt.
 
-`until` ends a running rule, here at any input. The runtime cancels the function where it waits. The function may clean
-up (here it closes the book). The sentences told so far remain told. The interrupting words are an ordinary input, with their own
-answer.
+`until` ends a running rule, here at any input. The runtime cancels the function where it waits. The function can clean
+up (here it closes the book). The slot `told` keeps the place in the story. The interrupting words are an ordinary
+input, with their own answer.
 
     python examples/storyteller.py         listen on the console, and interrupt
 """

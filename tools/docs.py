@@ -1,6 +1,6 @@
 """Hooks of the documentation's build: the order of pages, and the reference made from docstrings.
 
-A page's place within its section is the `order:` of its front matter (10 if it has none), then its name.
+Within a section, pages are sorted by the `order:` of their front matter (10 if there is none), and then by name.
 The reference has a page for each part of the public interface, and one for each built-in module: its README, and then
 its docstrings. The build reads the source and imports nothing.
 """

@@ -33,7 +33,8 @@ MODULES = (
         "async_rules", "blocking", "clock", "eager_task", "functions", "listeners", "rule_context", "runner", "spares", "timer", "waits",
     )),
 )  # fmt: skip
-"""The modules that are compiled, all together: a compiled module reaches into the objects of another without a look-up."""
+"""The compiled modules. They are compiled together, because compiled modules reach each other's objects without a
+look-up."""
 
 
 FLAGS = "-O2 -g0 -w -fno-semantic-interposition -fvisibility=hidden"

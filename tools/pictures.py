@@ -361,7 +361,7 @@ def life() -> str:
     sheet.box(508, 336, 424, 86, "band", 10)
     for row, (name, words) in enumerate((
         ("Done", "its spikes are consumed for its slots: no other rule answers"),
-        ("Resign", "its slots are free again: the next best rule is asked"),
+        ("Resign", "its slots are free again: the next best rule may run"),
         ("Error", "as Resign if it has written nothing, else as Done"),
         ("Retire", "as Done, and the rule leaves the context"),
     )):  # fmt: skip
@@ -376,7 +376,7 @@ def instant() -> str:
     sheet = Sheet("How an instant is settled: three waves", 900, 236)
     y = 96
     sheet.state(98, y, 172, "Something happens", ["an input, a deadline,", "a rule that ends"], "signal")
-    sheet.state(320, y, 176, "1  Free rules start", ["that write nothing,", "and so exclude nobody"], "rule")
+    sheet.state(320, y, 176, "1  Free rules start", ["that write nothing,", "and so exclude no rule"], "rule")
     sheet.state(560, y, 190, "2  Writers ask", ["for consent, the greatest", "effective utility first"], "waits")
     sheet.state(814, y, 168, "3  Flags settle", ["core:pressure, then", "core:activity"], "slot")
     for begin, end in ((184, 232), (408, 465), (655, 730)):

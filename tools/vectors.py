@@ -25,9 +25,12 @@ from ravestate.testing import simulate
 
 FILE = Path(vectors.__file__).with_name(vectors.FILE)
 WIDTH, LEVELS = 384, 63
-"""The length of a row, and its largest number. With 127, the file is 16 % larger. For 98.5 % of
-539 utterances, the nearest of 16,000 examples is the same as with exact vectors. With 127, the share is 99.1 %, and with 31 it is
-93.5 %. Half the dimensions would change the nearest example for 15 %."""
+"""The length of a row, and its largest number.
+
+With 63 levels, 98.5 % of 539 utterances have the same nearest example (of 16,000) as with exact vectors. With 127
+levels, the share is 99.1 %, but the file is 16 % larger. With 31 levels, the share is 93.5 %. With half the dimensions,
+the nearest example would change for 15 % of the utterances.
+"""
 
 
 def main(arguments: Sequence[str]) -> int:
@@ -101,7 +104,7 @@ def examples() -> list[str]:
 
 
 def write(texts: Sequence[str]) -> None:
-    """Write the file: the vectors that it has already, and those of new texts. Delete it to compute all."""
+    """Write the file: keep its vectors, and compute those of new texts. Delete the file to compute all vectors."""
     encoder = Encoder()
     small = np.zeros((len(texts), WIDTH), dtype=np.int8)
     keys = np.array([vectors.key_of(text) for text in texts], dtype=np.uint64)

@@ -1,4 +1,4 @@
-"""The floor: asyncio alone, without rules. Nothing that runs on asyncio can be quicker."""
+"""The floor: asyncio alone, without rules. Nothing that runs on asyncio can be faster."""
 
 import asyncio
 import time

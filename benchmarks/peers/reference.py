@@ -18,7 +18,7 @@ import ravestate as rs
 Seconds = float
 TICK: Seconds = 1 / 20
 
-serial = 0  # its modules live in one global registry, so every one needs a name of its own
+serial = 0  # the modules live in one global registry, so each module needs a name of its own
 
 
 class Agent:

@@ -38,7 +38,7 @@ def echo() -> None:
 
 
 def talk(count: int) -> list[Seconds]:
-    """Send a text to the echo, and the next one when it is back; return the seconds of each round."""
+    """Send a text to the echo, and the next text when the first is back; return the seconds of each round."""
     times, done = [], threading.Event()
     chat = rospy.Publisher("/chat", String, **OPTIONS)
 

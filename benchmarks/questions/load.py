@@ -6,11 +6,11 @@ answer is written. It begins when the input is due, even if the loop is busy the
 benchmark uses the process's own clock, and other programs do not count.
 
 Evenly spaced inputs show the delays that are ours: garbage collection, and the contexts' turns on the loop. Inputs at
-random moments (exponential pauses) also wait for each other. The last figure is the same for an ideal server: it gets
-the inputs at the same moments, and takes our time at full load for each.
+random moments (exponential pauses) also wait for each other. The last figure compares them with an ideal server. It
+gets the inputs at the same moments, and takes our time at full load for each.
 
-The floor is a loop of constant work instead of an agent, at the same even moments. Its slowest percent are delays that
-the machine causes.
+The floor is a loop of constant work instead of an agent, at the same even moments. The machine causes the delays in its
+slowest percent.
 """
 
 from __future__ import annotations
@@ -58,7 +58,7 @@ class Users:
 
         @module.rule(when=self.heard.changed, writes=output)
         async def fallback(ctx: rs.RuleContext) -> None:
-            raise AssertionError("the classifier has answered for it")
+            raise AssertionError("the fallback ran, although the classifier had answered")
 
         self.policy = rs.compile(module)
 

@@ -1,9 +1,9 @@
 """What does an agent add to a message of ROS, and does it keep up?
 
-- Share: a text goes to an echo node and back, and a rule sends the next one. The floor is a bare rospy or rclpy node that does
-  the same. Our share is the difference: the agent, and in ROS 2 two hops to the bridge process.
-- Stream: numbers come a thousand times a second. One slot takes all of them, another the latest. None may be lost, out of
-  order or left waiting, and neither the agent nor its bridge may grow after the first quarter.
+- Share: a text goes to an echo node and back, and then a rule sends the next text. The floor is a bare rospy or rclpy
+  node that does the same. Our share is the difference: the agent, and in ROS 2 two hops to the bridge process.
+- Stream: numbers come a thousand times a second. One slot takes all of them, another the latest. None may be lost, out
+  of order or left waiting, and neither the agent nor its bridge may grow after the first quarter.
 - Images: 640x480 colour images come 30 times a second. The number of copies is the number of bytes that the bridge
   writes, divided by the number of bytes of the images. The agent reads the bridge's memory.
 """
@@ -70,8 +70,8 @@ def _ask(bench: Bench, version: int) -> Iterable[Figure]:
     found = child.ask("stream", version=version, settings=settings["agent"], count=RATE * seconds)
     child.close()
     none: Any = {"unit": "", "target": "none", "reach": lambda x: x == 0}
-    yield measured("ros", f"{title}: of {RATE * seconds} lost or out of order", [float(found["lost"])], **none)
-    yield measured("ros", f"{title}: of the latest, old ones", [float(found["old"])], **none)
+    yield measured("ros", f"{title}: lost or misordered of {RATE * seconds}", [float(found["lost"])], **none)
+    yield measured("ros", f"{title}: outdated latest values", [float(found["old"])], **none)
     yield measured("ros", f"{title}: left waiting", [float(found["waiting"])], **none)
     for part in ("agent", "bridge"):
         yield measured(
@@ -142,7 +142,7 @@ def agent(settings: dict[str, Any]) -> Child:
 
 
 def talk(version: int, settings: dict[str, Any], count: int) -> list[float]:
-    """Send a text to the echo, and the next one when it is back; return the seconds of each round."""
+    """Send a text to the echo, and the next text when the first is back; return the seconds of each round."""
     ros: Any = (ros1, ros2)[version - 1]
     module = rs.Module("agent", requires=[ros])
     back = ros.subscriber(module, "back", topic="/back", type="std_msgs/String", keep="all")

@@ -102,7 +102,7 @@ def ask(bench: Bench) -> Iterable[Figure]:
     """Measure decisions, the prompt and memory, against the claims."""
     found = bench.ours(__name__).ask("decide", rounds=bench.several(8, 2))
     decided = found["decided"]
-    yield measured("text_agent", "who answers is decided", decided, target="< 15 ms", reach=lambda s: s < DECIDE)
+    yield measured("text_agent", "the answering rule is chosen", decided, target="< 15 ms", reach=lambda s: s < DECIDE)
     slow = [statistics.quantiles(decided, n=20)[-1]]
     yield measured("text_agent", "... in 19 of 20 cases", slow)
     prompts = [_prompt() for _ in bench.rounds(9, 3)]

@@ -1,9 +1,9 @@
 """What does the board cost the agent that it shows?
 
-The agent of the question ``answer`` (a chain of four rules) is a conversation of the web page, with or without the board. A
-board's browser may be connected over a WebSocket. The agent answers one input after another. This is the worst case for the
-board: a rule that computes would make the same records in more time. Each figure is the processor time of an answer. Within
-each measurement, the recorder reaches its limit and starts again several times.
+The agent of the question ``answer`` (a chain of four rules) has a conversation on the web page, with or without the
+board. In one case, a board's browser is connected over a WebSocket. The agent answers one input after another. This is
+the worst case for the board: a rule that computes would make the same records in more time. Each figure is the
+processor time of an answer. Within each measurement, the recorder reaches its limit and starts again several times.
 """
 
 from __future__ import annotations
@@ -81,7 +81,7 @@ class Talk:
 
 
 def _begin_anew(recorder: Any) -> None:
-    """Cancel the allowance that a recorder has saved up while it was idle, during the turns of the others."""
+    """Cancel the allowance that an idle recorder has saved up during the turns of the other contestants."""
     recorder._granted = asyncio.get_running_loop().time()
     recorder._left = max(1, min(recorder._left, int(recorder._rate * PAUSE)))
     recorder._idle_share.share()
@@ -145,7 +145,7 @@ def ask(bench: Bench) -> Iterable[Figure]:
     for _ in bench.rounds(3, 1):
         for times, found in zip((bare, mounted, watched), ours.ask("answered"), strict=True):
             times += found
-    for title, times in (("recorded, nobody looks on", mounted), ("a board looks on", watched)):
+    for title, times in (("recorded, no board open", mounted), ("recorded, a board open", watched)):
         yield compare("watching", title, times, "no board", bare, target="<= 1.05", reach=lambda ratio: ratio <= 1.05)
 
 

@@ -2,7 +2,7 @@
 
 The compiled modules are in ``native``, which has a folder for each interpreter and platform. `prefer` makes a package
 find the modules in that folder before the sources. The file ``stamp`` in the folder has a checksum of the sources. The
-sources run as pure Python if they have changed since, or if the environment variable ``RAVESTATE_PURE`` is not empty.
+sources run as pure Python if the checksum differs, or if the environment variable ``RAVESTATE_PURE`` is not empty.
 """
 
 from __future__ import annotations

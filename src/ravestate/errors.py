@@ -3,7 +3,7 @@
 ```text
 RavestateError
 ├── DeclarationError(ValueError)      a designer's mistake, found before running
-├── DeclarationErrors(ExceptionGroup) all such mistakes at once, raised by ``rs.compile``
+├── DeclarationErrors(ExceptionGroup) all such mistakes together, raised by ``rs.compile``
 ├── UsageError                        no such module, file or setting; commands end with exit code 2
 ├── RuleError(RuntimeError)           a rule failed, or broke its declaration
 │   ├── UndeclaredError(LookupError)  a rule touched a slot or a signal that it does not declare
@@ -69,7 +69,7 @@ class RuleTimeout(RuleError, TimeoutError):
 
 
 class RunEnded(RuleError):
-    """A rule acted after its run was over: it had returned, was interrupted or too slow, or the context had ended."""
+    """A rule acted after its run was over: it had returned, was interrupted or timed out, or the context had ended."""
 
 
 class EngineError(RavestateError, RuntimeError):

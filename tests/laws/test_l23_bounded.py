@@ -195,7 +195,7 @@ def test_an_endless_loop_that_happens_twice_is_reported_by_one_error(play: Any) 
         [(name, error)] = sim.failures
         assert name == "m:turn0"
         assert isinstance(error, rs.RuleError)
-        assert "m:turn0, m:turn1 set each other off" in str(error)
+        assert "m:turn0, m:turn1 triggered each other" in str(error)
         assert ".min_age(seconds)" in str(error)
 
 

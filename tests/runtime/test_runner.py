@@ -236,7 +236,7 @@ async def test_the_message_about_a_returned_value_says_what_to_write(nonsense: o
         failure = only_failure(talk)
         assert isinstance(failure, rs.RuleError)
         assert re.match(rf"rule m:answers \({HERE}:\d+\) returned {re.escape(repr(nonsense))};", str(failure))
-        assert "a rule may only return None, rs.Resign(reason) or rs.Retire(); write its result" in str(failure)
+        assert "a rule may only return None, rs.Resign(reason) or rs.Retire(); write the result" in str(failure)
 
 
 @on_loop

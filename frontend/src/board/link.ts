@@ -9,7 +9,7 @@ export interface Address {
   visitor?: string;
   recording?: string;
   token?: string;
-  /** Whether the user chose it on the board, so that it stays. */
+  /** Whether the user chose the conversation on the board, so that the board does not follow newer ones. */
   chosen?: boolean;
 }
 

@@ -8,11 +8,11 @@ export interface Line {
   key: string;
   from: "user" | "agent";
   text: string;
-  /** Milliseconds since 1970; undefined until the server confirms it. */
+  /** Milliseconds since 1970; undefined until the server confirms the line. */
   time?: number;
   /** The first line of a conversation that replaces a lost one. */
   anew?: boolean;
-  /** The server refused it, and would refuse it again. */
+  /** The server refused the line, and would refuse it again. */
   refused?: boolean;
   /** The part that the visitor heard, if the agent's speech was cut. */
   heard?: string;
@@ -129,7 +129,7 @@ export class Conversation {
     this.note = "";
     const say: Say = { type: "say", id: crypto.getRandomValues(new Uint32Array(3)).join("-"), text };
     this.trouble = "";
-    this.#told = Number.NEGATIVE_INFINITY; // the next key counts at once
+    this.#told = Number.NEGATIVE_INFINITY; // the next key press sends `writing` again
     this.lines = [...this.lines, { key: say.id, from: "user", text }];
     this.#outbox.push(say);
     this.#keep({ outbox: this.#outbox });
@@ -175,7 +175,7 @@ export class Conversation {
       this.partial = "";
       this.voice.connected(frame.voice === true);
       this.sight.connected(frame.sight ?? "");
-      for (const say of this.#outbox) this.#connection.send(say); // the server ignores those that it has
+      for (const say of this.#outbox) this.#connection.send(say); // the server ignores texts that it has already
     } else if (frame.type === "renamed") this.agent = frame.agent;
     else if (frame.type === "message") this.#hear(frame);
     else if (frame.type === "piece") this.partial = this.partial.slice(0, frame.at) + frame.text;

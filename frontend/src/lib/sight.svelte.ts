@@ -13,7 +13,7 @@ export interface Options {
 }
 
 /**
- * The visitor's camera. A notice comes before it goes on for the first time.
+ * The visitor's camera. Before it goes on for the first time, the page shows a notice.
  *
  * The agent asks for each picture, and gets the newest one.
  */

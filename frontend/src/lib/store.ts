@@ -23,16 +23,16 @@ export function keep(kept: Kept): void {
   try {
     sessionStorage.setItem(KEY, JSON.stringify(kept));
   } catch {
-    // they last until the reload only
+    // without storage, the values last until the reload
   }
 }
 
-/** Tell the boards of this browser that a conversation has begun. They follow the newest one. */
+/** Tell the boards of this browser that a conversation has begun. The boards follow the newest conversation. */
 export function announce(session: string): void {
   try {
     localStorage.setItem("ravestate.newest", session);
   } catch {
-    // then a board shows the newest conversation of the server
+    // without storage, a board shows the server's newest conversation
   }
 }
 
@@ -53,7 +53,7 @@ export function markSeen(note: string): void {
   try {
     localStorage.setItem(NOTE, note);
   } catch {
-    // then it is shown again
+    // without storage, the note appears again
   }
 }
 
@@ -73,7 +73,7 @@ export function markAgreed(notice: string): void {
   try {
     localStorage.setItem(AGREED, notice);
   } catch {
-    // then the page asks again
+    // without storage, the page asks again
   }
 }
 

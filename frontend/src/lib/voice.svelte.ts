@@ -19,7 +19,7 @@ export interface Options {
 /**
  * The visitor's voice and the agent's: the microphone, open or while a button is held, and the loudspeaker.
  *
- * A short press of the button opens the microphone, or turns it off. A long one lets the visitor talk while they hold it.
+ * A short press of the button opens the microphone, or turns it off. A long press lets the visitor talk while it lasts.
  */
 export class Voice {
   /** Whether the agent can hear. */

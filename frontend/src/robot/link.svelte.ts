@@ -1,4 +1,4 @@
-// The connection to the stand-in robot. It is made again when it breaks.
+// The connection to the stand-in robot. If it breaks, the page connects again.
 import { ASLEEP, type Looks } from "./face.ts";
 
 const AGAIN = 1000; // milliseconds

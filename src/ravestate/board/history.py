@@ -315,9 +315,9 @@ class Rivals:
         return min(1.0, (time - fired[runs - 1]) / rule.cooldown) if rule.cooldown and runs else 1.0
 
     def _answered(self, rule: RuleView, time: float) -> tuple[str, int]:
-        """Return the first other rule that answered the group, by `time`, with a write to a slot of `rule`.
+        """Return the other rule that first answered the group, and the number of its activation.
 
-        Return the number of that rule's activation as well.
+        Only rules that write a slot of `rule`, and answers up to `time` (seconds) count.
         """
         if rule.name not in self._first:
             slots = set(rule.writes)

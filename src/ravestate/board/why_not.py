@@ -224,8 +224,8 @@ class _Inquiry:
     def _was_gated(self, rule: RuleView, attempt: Attempt, ripe: float | None, last: GaveUp) -> bool:
         """Return whether a slot predicate was false when an attempt lost its spikes.
 
-        If the trace does not show the slot's value, an attempt counts as gated in two cases: it lost its spikes without
-        an answer by another rule, or its spikes were old enough but it did not wait.
+        If the trace does not show the slot's value, the predicate counts as false in two cases: the attempt lost its
+        spikes without an answer by another rule, or its spikes were old enough but it did not wait.
         """
         if not rule.clauses[attempt.clause].gates:
             return False

@@ -21,7 +21,7 @@ __all__ = ["UsageError", "main", "script"]
 COMMANDS = {
     "chat": "talk with the complete agent on the console",
     "run": "run an agent from modules or an agent file",
-    "board": "talk with an agent on a web page and look inside it, or look at a recorded trace",
+    "board": "talk with an agent on a web page beside its debugger, or open a recorded trace",
     "check": "print an agent's faults, and findings such as ties, endless loops and undeclared writes",
     "graph": "draw the Signal-Rule-Slot diagram of the complete agent or of another agent",
     "nlp": "show what the agent sees in a text: words, names, triples, yes or no, signals",
@@ -30,7 +30,7 @@ COMMANDS = {
     "genqa": "read documents, and answer questions from them",
     "voice": "check the devices and models for speech, transcribe, speak, hold a conversation with a recording",
     "vision": "say whose faces are in pictures, learn a face, check the camera",
-    "activity": "name the activity that somebody performs in a video, teach an activity",
+    "activity": "name the activity that a person performs in a video, teach an activity",
     "ros": "check an agent's topics and services, list the network's topics, show a topic's messages",
     "robot": "start a stand-in robot with a face on a web page, alone or with an agent behind it",
     "new": "write a small project to start from",

@@ -1,4 +1,4 @@
-"""``ravestate activity``: name the activity that somebody performs in a recording, and teach an activity."""
+"""``ravestate activity``: name the activity that a person performs in a recording, and teach an activity."""
 
 from __future__ import annotations
 
@@ -22,7 +22,7 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
     actions = parser.add_subparsers(dest="action", metavar="ACTION", required=True)
     guessing = actions.add_parser(
         "guess",
-        help="name the activity that somebody performs in a video or a file of landmarks",
+        help="name the activity that a person performs in a video or a file of landmarks",
         description="Print a line for each window of a few seconds: its beginning and end (seconds), the activity or "
         "'unknown', and the confidence. Exit code 1: no body can be seen.",
     )
@@ -31,7 +31,7 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
         "teach",
         help="teach an activity with recordings of it",
         description="Learn an activity from recordings, and keep their landmarks, not their pictures. Cut each recording to the "
-        "time in which somebody performs the activity. A few seconds are enough, but several recordings are better.",
+        "time in which the person performs the activity. A few seconds are enough, but several recordings are better.",
     )
     teaching.add_argument("name", metavar="NAME", help="the name as it is spoken, such as 'playing the flute'")
     teaching.add_argument("files", nargs="+", type=Path, metavar="FILE", help="a video, or landmarks (.npz)")

@@ -50,8 +50,8 @@ def explain_memory(parser: argparse.ArgumentParser) -> None:
     parser.epilog = (
         "The complete agent keeps its memory of you on this machine:\n"
         f"  {shown('data', 'default', 'memory.lbug')} (for another file: --set ontology.path=FILE)\n"
-        "To look at it: ravestate memory list, ravestate memory show NAME. To delete it: ravestate memory forget NAME,\n"
-        'say "forget me", or delete the file.\n'
+        "To look at the memory: ravestate memory list, ravestate memory show NAME. To remove a person: say\n"
+        '"forget me", or ravestate memory forget NAME. To remove the whole memory: ravestate memory reset.\n'
     )
 
 

@@ -20,7 +20,7 @@ if TYPE_CHECKING:
 SHOWN = 5
 """The maximum number of intents in the table."""
 PATIENCE = 60.0
-"""Wait this many seconds for a language model. The wait may be long, because nobody waits for an agent's answer."""
+"""Wait this many seconds for a language model. The limit is high, because no user waits for an answer."""
 
 
 def add_arguments(parser: argparse.ArgumentParser) -> None:

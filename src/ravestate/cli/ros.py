@@ -37,7 +37,7 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
     listing = actions.add_parser("topics", help="list the topics, services and actions of the network")
     echoing = actions.add_parser("echo", help="print the messages of a topic, one line of JSON for each")
     echoing.add_argument("topic", metavar="TOPIC", help="the topic's name, such as /chat")
-    echoing.add_argument("--type", help="the type of its messages, if nobody publishes yet")
+    echoing.add_argument("--type", help="the type of its messages, if no node publishes yet")
     echoing.add_argument("-n", "--count", type=int, default=0, help="end after this many messages")
     for action in (checking, listing, echoing):
         action.add_argument(

@@ -172,10 +172,10 @@ def _learn(options: argparse.Namespace, settings: dict[str, Any]) -> int:
         person = _person(memory, name)
         other = memory.together(lambda graph: people.nearest(graph, vectors[0][1], vision.threshold)).result()
         if other is not None and other.person.id != person.id and _shown(other.person).casefold() != name.casefold():
-            # Under two names, the agent would recognise neither.
+            # If one face had two names, the agent would recognise neither person.
             raise RavestateError(
                 f"nothing was learnt: memory knows this face as {_shown(other.person)} (distance {other.distance:.3f}). If that "
-                "is wrong, remove it first: ravestate memory forget NAME"
+                "is wrong, first run: ravestate memory forget NAME"
             )
         _, filed = memory.together(lambda graph: people.keep(graph, person, vectors, vision.most)).result()
     print(f"learnt {filed} view{'' if filed == 1 else 's'} of {name}")
@@ -221,7 +221,7 @@ def _memory(settings: Any, *, make: bool) -> Generator[Memory | None]:
 
     path = path_of(settings)
     if path is not None and not path.exists() and not make:
-        print(f"ravestate vision: there is no memory in {path}, so nobody is known", file=sys.stderr)
+        print(f"ravestate vision: there is no memory in {path}, so no face is known", file=sys.stderr)
         yield None
         return
     memory = open_memory(settings)

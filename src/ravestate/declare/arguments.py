@@ -47,7 +47,7 @@ def keywords(*options: str) -> Callable[[Callable[P, R]], Callable[P, R]]:
 
 
 def check_name(name: object, what: str) -> None:
-    """Refuse an invalid `name`; the message begins with `what`, which says what is declared."""
+    """Refuse an invalid `name`; the message begins with `what`, such as ``Module``."""
     if not isinstance(name, str) or not name.replace("-", "_").isidentifier():
         raise DeclarationError(
             f"{what}: {name!r} is not a name: use letters, digits, '_' and '-', beginning with a letter"

@@ -103,7 +103,7 @@ class Constraint(Condition):
 
 @dataclass(frozen=True, slots=True, repr=False)
 class Holds(Condition):
-    """A predicate on a slot's current value. The rule runs only while the predicate is true (L4)."""
+    """A predicate on a slot's current value. The rule starts only while the predicate is true (L4)."""
 
     slot: Slot[Any]
     predicate: Predicate

@@ -32,7 +32,7 @@ class Module:
         requires: Modules whose signals and slots this module uses: `Module` values, or Python modules that contain one
             (``from ravestate.modules import rawio``).
         settings: A subclass of ``rs.Settings`` with the values that a user may configure.
-        serve: An async function, for platforms that serve many users at once. ``rs.run`` calls it with the `Agent`
+        serve: An async function, for platforms that serve many users. ``rs.run`` calls it with the `Agent`
             instead of running one context. The function makes a context for each user, and ends when it is cancelled.
 
     Example:

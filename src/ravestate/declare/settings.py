@@ -10,7 +10,7 @@ from dataclasses import dataclass
 
 @dataclass(frozen=True, slots=True)
 class SettingRef:
-    """The name of a numeric setting, and its `owner`: a settings class, or None for that of the rule's module."""
+    """The name of a numeric setting, and its `owner`: a settings class, or None for the class of the rule's module."""
 
     name: str
     owner: type | None = None
@@ -25,5 +25,6 @@ Number = float | SettingRef
 
 
 def setting(name: str) -> SettingRef:
-    """Return a reference to a setting of the rule's own module, as in ``idle.bored.min_age(rs.setting("bored_after"))``."""
+    """Return a reference to a setting of the rule's own module, as in
+    ``idle.bored.min_age(rs.setting("bored_after"))``."""
     return SettingRef(name)

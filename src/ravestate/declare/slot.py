@@ -84,7 +84,8 @@ class Slot(Generic[T]):
         )
 
     def holds(self, predicate: Predicate) -> Holds:
-        """Return a gate: a rule runs only while ``predicate(value)`` is true. A gate adds ln 2 to the utility (L9)."""
+        """Return a condition: a rule starts only while ``predicate(value)`` is true. It adds ln 2 to the utility
+        (L9)."""
         return Holds(self, checked_predicate(predicate, f"{self.name}.holds", "value"))
 
     def __getattr__(self, attribute: str) -> NoReturn:

@@ -1,8 +1,8 @@
 """A proper layered graph: each segment joins two neighbouring layers.
 
-Vertices are the nodes of the diagram, the labels of its edges, and dummies where a long edge passes a layer. A line begins
-and ends at a port. Edges of one kind share one port on each side of a node. Long edges that begin (or end) at one port
-share their dummies, too. So a hub shows one hyperedge with branches instead of a bundle of parallel lines.
+Vertices are the nodes of the diagram, the labels of its edges, and dummies where a long edge passes a layer. A line
+begins and ends at a port. Edges of one kind share one port on each side of a node. Long edges that begin (or end) at
+one port share their dummies, too. So a hub shows one hyperedge with branches instead of a bundle of parallel lines.
 """
 
 from __future__ import annotations
@@ -17,7 +17,7 @@ from ravestate.draw.graph import EdgeKind
 VertexKind = Literal["node", "label", "dummy"]
 
 _GAPS = {(True, True): 16.0, (True, False): 12.0, (False, True): 12.0, (False, False): 9.0}
-"""The minimum gap between two adjacent vertices (pixels). Key: whether the upper, and the lower, is not a dummy."""
+"""The minimum gap between two adjacent vertices (pixels). Key: for the upper and the lower, whether it is no dummy."""
 _SOLID: tuple[EdgeKind, ...] = ("writes", "emits")  # solid lines may overlap; dashed lines would blur each other
 _PITCH = 10.0  # pixels between ports of one side, where there is room
 _MARGIN = 10.0  # pixels from a corner, which may be round, to the first or last port

@@ -32,7 +32,7 @@ def width(text: str, size: float) -> float:
 
 
 def shorten(text: str, size: float, limit: float) -> str:
-    """Cut the middle out of a text wider than `limit` pixels; both ends stay, as names often differ there."""
+    """Cut the middle out of a text wider than `limit` pixels; both ends stay, because names often differ there."""
     if width(text, size) <= limit:
         return text
     room = limit - width("…", size)

@@ -1,11 +1,11 @@
 """The agenda: the order in which ready activations start, ask for consent, or wait (L15-L17, L22).
 
-1. Activations that need no consent start at once: their rules write no slot, or all their constraints are detached.
+1. Activations that need no consent start first: their rules write no slot, or all their constraints are detached.
 2. When none of these is left, the other ready activations ask for consent (``consent.py``). Activations with older
-   causes ask first; of those with the same cause, the one with the greatest utility. By then, the rules of step 1 that
-   never suspend have ended.
-3. When no activation may start, the engine updates the built-in flags. Only the change of ``core:activity`` to true comes
-   earlier, before step 1 (``parts.py``).
+   causes ask first. If causes are equal, the activation with the greatest utility asks first. By then, the rules of
+   step 1 that never suspend have ended.
+3. When no activation may start, the engine updates the built-in flags. Only the change of ``core:activity`` to true
+   comes earlier, before step 1 (``parts.py``).
 
 When a rule ends, the activations that wait for it ask again in the same instant. They ask after all rules that end in
 this instant have ended. So the caller of `Engine.effects` must first give the engine all events of the instant.
@@ -171,7 +171,8 @@ class Agenda:
         queue.join(turns)
 
     def _may_ask(self, activation: Activation) -> bool:
-        """Return whether an activation may ask: it is ready or waits, its guards are true, and it is not deferred (L23)."""
+        """Return whether an activation may ask: it is ready or waits, its guards are true, and it is not deferred
+        (L23)."""
         if activation.state not in (READY, WAITING):
             return False
         if activation.clause.guards and not self._pass_guards(activation):
@@ -227,7 +228,7 @@ class Agenda:
         while breakers:
             order, best = heapq.heappop(breakers)
             if best not in stuck:
-                continue  # this activation has asked again since
+                continue  # this activation has asked again in the meantime
             if order != state.order(best):
                 heapq.heappush(breakers, (state.order(best), best))  # its rule has run meanwhile
                 continue

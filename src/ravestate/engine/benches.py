@@ -6,8 +6,8 @@ counterpart (L12). So only the oldest pair gets an activation, the *head* of the
 the bench, and the whole bench takes the next counterpart.
 
 A clause has benches only if no better clause competes with it (`Half.sole`). Its activations wait for no rival, so a
-group refuses them only while a slot is taken there. If a group refuses the head, the engine at once creates a new head,
-for the next first spike. The new head asks in the same round of consent.
+group refuses them only while a slot is taken there. If a group refuses the head, the engine creates a new head for the
+next first spike. The new head asks in the same round of consent.
 
 So the pairs with older first spikes ask first. In consent, older causal groups go first. Both orders are the same: no
 rule raises these signals, so each spike begins a group. Before a group merges, its spikes leave their benches.
@@ -44,7 +44,8 @@ class Benches:
         self._place(self.state.pools.pop(half), partner)
 
     def check(self, partner: Spike) -> None:
-        """Give a head to each bench of a counterpart. If the bench can no longer use the counterpart, give it another."""
+        """Give a head to each bench of a counterpart. If the bench can no longer use the counterpart, give it
+        another."""
         state = self.state
         for bench in list(state.benches.get(partner, {}).values()):
             rule = bench.half.needs[0].clause.rule
@@ -112,7 +113,7 @@ class Benches:
         self._lead(bench, partner)
 
     def _move(self, bench: Bench) -> None:
-        """Give a bench the oldest live counterpart that fits (L12). If none fits, its spikes wait for the next one."""
+        """Give a bench the oldest live counterpart that fits (L12). If none fits, the bench waits for the next."""
         state, half = self.state, bench.half
         self.holdings.entries.vacate(bench)
         need = other_need(half.needs[0])

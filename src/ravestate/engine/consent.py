@@ -5,8 +5,8 @@ activation writes. It also refuses while a *rival* stands in the group: another 
 greater effective utility, and may still become ready. The rival must also hold a spike of the group, or lack a signal
 that a rule of the group may cause.
 
-If only an input or a rule of another group can make a rival ready, the rival is under *pressure*. When its patience ends,
-the activation stops waiting for it. A rival gets its patience once in each group (L16).
+If only an input or a rule of another group can make a rival ready, the rival is under *pressure*. When its patience
+ends, the activation stops waiting for it. A rival gets its patience once in each group (L16).
 
 A clause without an activation may be a rival, too. The rival is then the clause's *stand-by*, which holds no spike. A
 *half* (``halves.py``) holds spikes for clauses that have no activation yet. With a tracer, halves hold no spikes, and
@@ -198,8 +198,9 @@ class Consent:
     def _press_half(self, refusal: Refusal, half: Half, spike: Spike, clause: Clause, *, commit: bool) -> bool:
         """Put the clauses of a half that are ahead of `clause` under pressure. Return whether a clause was eliminated.
 
-        For each spike and half, `State.patience_ends` has pairs: how many of the half's best clauses have a patience, and when
-        it ends. Each count includes the clauses of earlier pairs. A time applies to the clauses that its pair adds.
+        For each spike and half, `State.patience_ends` has pairs: how many of the half's best clauses have a patience,
+        and when it ends. Each count includes the clauses of earlier pairs. A time applies to the clauses that its pair
+        adds.
 
         If a clause still has patience, add it to `refusal`, which `ask` returns.
         """
@@ -236,8 +237,9 @@ class Consent:
     def is_contested(self, best: Activation) -> bool:
         """Return whether a rival's utility may lie between those of the clauses of a conflict set.
 
-        The clauses of a conflict set compete for each spike (``conflict_sets.py``). Only the best one has an activation;
-        the others are its alternatives. A rival in between waits for the best clause, and an alternative waits for the rival.
+        The clauses of a conflict set compete for each spike (``conflict_sets.py``). Only the best one has an
+        activation; the others are its alternatives. A rival in between waits for the best clause, and an alternative
+        waits for the rival.
         """
         state = self.state
         clauses = state.alternatives[best][0]
@@ -394,6 +396,6 @@ def _note_sure(refusal: Refusal, roots: tuple[Activation, ...]) -> None:
 
 
 def _is_covered(younger: Activation, older: Sequence[Activation]) -> bool:
-    """Return whether one of some older activations, which will be ready first, holds all spikes of a younger one."""
+    """Return whether an older activation, which will be ready first, holds all spikes of a younger activation."""
     spikes = younger.firm_spikes() if older else ()
     return any([all([spike in one.spikes for spike in spikes]) for one in older])

@@ -11,7 +11,7 @@ Place = tuple[int, int, int, Activation]
 
 
 class Free(Line):
-    """A queue of ready activations. Most join at its end. One that lost a spike and took another may join anywhere.
+    """A queue of ready activations. Most join at its end. An activation whose spikes have changed may join anywhere.
 
     Attributes:
         new: The activations that have become ready since the last call of `pop`.

@@ -1,9 +1,9 @@
 """Halves: first spikes that wait, without an activation, for a second spike.
 
-A clause with two constraints, its *needs*, takes two spikes. A *half* (`Half`) groups needs for the same signal that
-the engine can treat alike. A thousand rules `input & topic` would need a thousand activations for each input, although
-only a few of the topics occur. So the half holds the first spike as an *entry* in a table (``entries.py``), without
-activations.
+A clause with two constraints, its *needs*, takes two spikes. A *half* (`Half`) is a group of needs for the same signal,
+all of which the engine can treat alike. A thousand rules `input & topic` would need a thousand activations for each
+input, although only a few of the topics occur. So the half holds the first spike as an *entry* in a table
+(``entries.py``), without activations.
 
 The engine makes activations when the second spike, the *counterpart*, arrives. If many first spikes wait for it, the
 number of activations depends on the rule:
@@ -13,7 +13,7 @@ number of activations depends on the rule:
   (``benches.py``)
 - for any other rule: one activation with each first spike, because consent chooses one of them
 - for a rule that was added while a spike of its signals was live: also one activation with each first spike, because
-  each activation may lose a spike and then take that older one
+  each activation may lose a spike and then take that older spike
 
 To *unfold* an entry is to make its activations. All entries unfold if there is a tracer, and when a rule retires or is
 added. The entries of a group unfold before the group merges. `Consent` unfolds an entry to judge its clauses one by
@@ -116,9 +116,9 @@ class Halves:
     def share(self, policy: Policy) -> None:
         """Create the activations that `_pair` left out, for clauses whose signals are kin only under a new policy.
 
-        So far, an activation that lost a spike took the oldest live one, so the other activations could form the missing
-        pairs. From now on, it may only take a spike of the same causal group (L12). So each spike gets an activation of
-        its own, with the first counterpart that came later.
+        So far, an activation that lost a spike took the oldest live spike, so the other activations could form the
+        missing pairs. From now on, such an activation may only take a spike of the same causal group (L12). So each
+        spike gets its own activation, with the first counterpart that came later.
         """
         for activations in list(self.state.active.values()):
             clause = next(iter(activations)).clause
@@ -194,7 +194,8 @@ class Halves:
     def _pair(self, need: Need, spike: Spike, group: Group) -> bool:
         """Make the activations for which a new spike is the counterpart. Return whether the clause needs no entry.
 
-        A clause whose rule writes no slot needs no entry: its activation with the oldest first spike takes the new spike.
+        A clause whose rule writes no slot needs no entry: its activation with the oldest first spike takes the new
+        spike.
         """
         state = self.state
         partner = need.clause.needs[1 - need.index]
@@ -251,7 +252,8 @@ class Halves:
         return found
 
     def _inherit_pressure(self, spike: Spike, half: Half, group: Group) -> None:
-        """If the stand-by of a clause was under pressure, create its activation, and put that under pressure."""
+        """If the stand-by of a clause was under pressure, create its activation, and put the activation under
+        pressure."""
         for number in group.patience_ends or ():
             clause = self.state.policy.clause_plans[number]
             place = half.places.get(clause.rule.index)
@@ -264,5 +266,5 @@ def _birth(spike: Spike) -> int:
 
 
 def _need(clause: Clause, spike: Spike) -> Need:
-    """Return the one of a clause's two needs that a spike meets."""
+    """Return which of a clause's two needs a spike meets."""
     return clause.needs[0] if clause.needs[0].signal is spike.signal else clause.needs[1]

@@ -102,7 +102,8 @@ class Holdings:
         return held is None or held.group.root() is spike.group.root()
 
     def look(self, activation: Activation, needs: Iterable[Need]) -> None:
-        """For each detached need without a spike, take the newest spike that fits. Prefer spikes that are old enough."""
+        """For each detached need without a spike, take the newest spike that fits. Prefer spikes that are old
+        enough."""
         state = self.state
         for need in needs:
             if not need.detached or not need.bit & activation.missing:
@@ -263,7 +264,7 @@ class Holdings:
     def give_up(self, run: Activation, reason: str) -> None:
         """Make all other activations of a run's rule give up the run's non-detached spikes for good."""
         rule = run.clause.rule
-        for spike in run.stands_on:  # refuse all first: an activation that loses a spike takes another at once
+        for spike in run.stands_on:  # refuse all first: an activation that loses a spike immediately takes another
             self.benches.unbench(spike)
             self.entries.refuse_for_good(spike, rule)
         for spike in run.stands_on:
@@ -274,7 +275,8 @@ class Holdings:
                     self.lose(other, [n for n in _of_spike(other, spike) if not n.detached], reason, run)
 
     def end(self, activation: Activation, reason: str = "", by: Activation | None = None) -> None:
-        """End an activation and remove every reference to it. With a `reason`, record in the trace each spike it gives up."""
+        """End an activation and remove every reference to it. With a `reason`, record in the trace each spike it gives
+        up."""
         state = self.state
         before = activation.state
         self._unhead(activation)

@@ -94,7 +94,7 @@ class Horizon:
         self.inert = inert
         self.stuck = stuck
         self._inert: dict[int, int] | None = None  # rule → how many of its activations are in `inert`
-        # For each place: its strength, its roots if that is SURE, and the depth of the oldest open derivation it rests on.
+        # Place → its strength, its roots if the strength is SURE, and the depth of the oldest open derivation under it.
         self._known: dict[Place, tuple[int, tuple[Activation, ...], int]] = {}
         self._depth = 0  # how many derivations are in progress
         self._since = FINAL  # the depth of the oldest derivation whose bound the present derivation has read

@@ -220,7 +220,7 @@ class Matching:
     def on_look(self, looking: tuple[Need, Spike]) -> None:
         """Show a spike to a detached need for which it is old enough now (L19)."""
         need, spike = looking
-        need = self.state.policy.clause_plans[need.clause.index].needs[need.index]  # a rule may have been added since
+        need = self.state.policy.clause_plans[need.clause.index].needs[need.index]  # an added rule renews the plans
         if self.state.fits(need, spike):
             self._show(need, spike)
 

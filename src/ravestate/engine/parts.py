@@ -51,7 +51,7 @@ class Parts:
     # ------------------------------------------------------------------------------------ time and effects
 
     def pass_time(self, now: float) -> None:
-        """Let time pass until `now` (seconds), before an event. An earlier time than the latest one changes nothing."""
+        """Let time pass until `now` (seconds), before an event. A time that has passed already changes nothing."""
         state = self.state
         if now > state.now:
             self.holdings.waits.pass_time()

@@ -13,7 +13,8 @@ if TYPE_CHECKING:
     from ravestate.engine.state import State
 
 SPARE = 32
-"""If a row has this many spikes more than twice those of its half, it drops the spikes that the half has given up."""
+"""The spikes that a row may have beyond twice those of its half. A longer row drops the spikes that the half gave
+up."""
 
 
 class Row:

@@ -249,6 +249,6 @@ def _endless(rules: Sequence[RulePlan]) -> str:
     names = ", ".join(rule.name for rule in rules)
     whom = "each other" if len(rules) > 1 else "itself"
     return (
-        f"an endless loop: {names} set {whom} off {MANY + TURNS:,} times within one instant; write "
+        f"an endless loop: {names} triggered {whom} {MANY + TURNS:,} times within one instant; write "
         ".min_age(seconds) after a signal of the loop, so that time passes"
     )

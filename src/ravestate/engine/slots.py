@@ -143,7 +143,9 @@ def _mark_write(slot: SlotPlan, run: Activation | None) -> None:
     """Record that a run writes a slot; refuse the write if the rule does not declare it (L3)."""
     if run is not None:
         if slot.index not in run.clause.rule.slotset:
-            raise UndeclaredError(f"rule {run.clause.rule.name} writes {slot.name} without writes={slot.name}")
+            raise UndeclaredError(
+                f"rule {run.clause.rule.name} wrote {slot.name} without declaring it: write writes={slot.name}"
+            )
         run.wrote = True
 
 

@@ -51,7 +51,7 @@ class Standing:
         return now and soon
 
     def overtakes(self, one: Clause, other: Clause) -> bool:
-        """Return whether `one` is ahead of `other` in the next moment. If so, `other` waits for `one` by then (L16)."""
+        """Return whether `one` is ahead of `other` in the next moment. If so, `other` then waits for `one` (L16)."""
         if not (one.rule.cooldown or other.rule.cooldown):
             return self.is_ahead(one, other)
         return self._leads(one, other)[1]

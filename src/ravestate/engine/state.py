@@ -129,8 +129,8 @@ class State(Memory):
         """The counterparts of benches whose heads may have gone."""
         self.patience_ends: dict[Spike, dict[Half, list[tuple[int, float]]]] = NOTHING
         """Spike → half that holds the spike → pairs of a count and a time (seconds). The count says how many of the
-        half's best clauses are under pressure. Each count includes the clauses of earlier pairs; the time is the end of
-        the patience of those that it adds (L16)."""
+        half's best clauses are under pressure, including the clauses of earlier pairs. The time is the end of the
+        patience of the clauses that the pair adds (L16)."""
         self.gated: dict[Activation, None] = NOTHING
         """Activations that hold all their spikes, but have a slot predicate that is false."""
         self.free = Free()
@@ -241,7 +241,8 @@ class State(Memory):
         return None
 
     def fits(self, need: Need, spike: Spike) -> bool:
-        """Return whether a live spike may meet a need: age and payload fit, and the rule has not given it up for good."""
+        """Return whether a live spike may meet a need: age and payload fit, and the rule has not given it up for
+        good."""
         rule = need.clause.rule
         if spike.born + need.max_age <= self.now and (need.max_age or spike.born < self.now):
             return False
@@ -311,7 +312,8 @@ class State(Memory):
     # ------------------------------------------------------------------------------------ slots and predicates
 
     def is_open(self, clause: Clause) -> bool:
-        """Return whether the clause's slot predicates are true. A predicate that raises counts as false, and is reported."""
+        """Return whether the clause's slot predicates are true. A predicate that raises counts as false, and is
+        reported."""
         for slot, guard in clause.guards:
             if not self.test(guard.predicate, self.read(slot.index), clause):
                 return False
@@ -343,7 +345,7 @@ class State(Memory):
             self.faults[id(predicate)] = clause, predicate, exception
 
     def accepts(self, need: Need, payload: Any) -> bool:
-        """Return whether all predicates of a need accept a payload. The first that refuses is the last to be called."""
+        """Return whether all predicates of a need accept a payload. After the first refusal, no more are called."""
         for predicate in need.predicates:
             if not self.test(predicate, payload, need.clause):
                 return False

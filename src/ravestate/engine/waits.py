@@ -53,13 +53,13 @@ class Waits:
                 self.tell_followers()
 
     def tell_followers(self) -> None:
-        """Record in the trace which rules the followers wait for, where that has changed with their leaders' waits."""
+        """Record in the trace which rules the followers wait for, after a change of their leaders' waits."""
         for other in self.state.waiting:
             if other.refusal is not None and other.refusal.leader is not None:
                 self._tell(other, other.refusal)
 
     def _tell(self, activation: Activation, refusal: Refusal) -> bool:
-        """Record a refusal's names in the trace, unless it has the same names already. Return whether they are new."""
+        """Record a refusal's names in the trace, unless the trace has them already. Return whether they are new."""
         state = self.state
         names = tuple(refusal.all_names)
         if names == refusal.told or state.tracer is None:
@@ -135,7 +135,7 @@ class Waits:
         return asking
 
     def pass_time(self) -> None:
-        """Make the next search for a stalemate begin with all stuck activations, as time may change their reasons."""
+        """Make the next search for a stalemate begin with all stuck activations: time may change their reasons."""
         if self.state.stuck:
             self.state.refused.update(dict.fromkeys(self.state.stuck))
             self.state.stuck.clear()

@@ -91,7 +91,7 @@ def build(
 
 
 def _check_reachable(causes: Causes, faults: list[str]) -> None:
-    """Add a fault for each rule that no input can start, because it waits for effects of rules that wait in turn.
+    """Add a fault for each rule that no input can start, because it waits for rules that cannot start either.
 
     A rule that lacks only the signal of a slot, or a detached effect, gets a finding instead. Code outside the rules
     may write slots, and detached effects make loops on purpose.

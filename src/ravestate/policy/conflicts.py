@@ -66,7 +66,8 @@ class Conflicts:
         self._names: dict[int, tuple[str, ...]] = {}
 
     def roots(self, clause: Clause) -> int:
-        """Return the roots of a clause's pathways, as bits: the signals or cycles where its causes begin (`Causes.roots`)."""
+        """Return the roots of a clause's pathways, as bits: the signals or cycles where its causes begin
+        (`Causes.roots`)."""
         found = self._roots.get(clause)
         if found is None:
             found = 0

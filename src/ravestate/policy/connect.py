@@ -10,7 +10,8 @@ from ravestate.policy.model import Clause, Half, Need, RulePlan, SignalPlan, Slo
 
 
 def connect(signals: Sequence[SignalPlan], slots: Iterable[SlotPlan], rules: Iterable[RulePlan]) -> None:
-    """Set the listeners and watchers of each signal; mark the signals that are inputs (L8), and the slots with guards."""
+    """Set the listeners and watchers of each signal; mark the signals that are inputs (L8), and the slots with
+    guards."""
     raised = {signal for rule in rules for signal in rule.raises}
     listeners: list[list[Need]] = [[] for _ in signals]
     watchers: list[list[Need]] = [[] for _ in signals]
@@ -157,7 +158,7 @@ def _is_plain(clause: Clause) -> bool:
 
 
 def _likeness(need: Need, causes: Causes) -> Any:
-    """Return a key. All decisions about a first spike are the same for needs for one signal with equal keys."""
+    """Return a key. Needs for one signal that have equal keys get the same decisions about a first spike."""
     rule = need.clause.rule
     if need.predicates:
         return need

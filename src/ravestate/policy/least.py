@@ -3,11 +3,11 @@
 An *alternative* of a signal is a set of signals that together may cause it. A pathway is a set that holds an
 alternative of each of its signals (`Completion`). Its *cost* is its information.
 
-The search begins with the clause's own signals. Each step takes the signals that lack an alternative, and tries each
-alternative of the one with the highest bit. Two sets may agree in all signals that further steps may reach. Then these
-steps are the same for both, so the search follows only the cheaper set. So independent choices do not multiply. The
-search for a signal uses the least pathways of its causes. If the causes form a chain, a ring or a tree, it takes one or
-two steps.
+The search begins with the clause's own signals. Among the signals that lack an alternative, each step takes the signal
+with the highest bit, and tries each alternative of this signal. Two sets may agree in all signals that further steps
+can reach. Then these steps are the same for both sets, so the search follows only the cheaper set. Therefore
+independent choices do not multiply. The search for a signal uses the least pathways of its causes. If the causes form a
+chain, a ring or a tree, the search takes one or two steps.
 
 If alternatives have causes in common, the search is a weighted set cover problem, for which no quick method is known.
 If a step leaves too many sets, the search follows only the cheapest sets, and the result may be too high. That happens
@@ -154,7 +154,8 @@ class Least:
     def _lacking(self, lacking: int, before: int, found: int) -> int:
         """Return the open signals of the set `found` that lack an alternative there.
 
-        `before` is the set before the last addition. `lacking` has the signals of `before` that may lack one.
+        `before` is the set before the last addition. `lacking` has the signals of `before` that may lack an
+        alternative.
         """
         new = found & ~before
         left = lacking | new & self._open

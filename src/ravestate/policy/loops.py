@@ -1,9 +1,9 @@
 """Rules that trigger each other without time passing (L23).
 
 In a loop, each rule has a clause whose signals come from rules of the loop, and at least one rule or constraint is
-detached. Without detachment the causal group ends the loop (L19). A clause with a ``min_age``, a predicate or a gate
-is not part of a loop here, because it may end the loop. A rule that takes time is not part of a loop either. A rule
-takes time if it awaits something, or if it is a plain function that calls code outside its context.
+detached. Without detachment, the causal group ends the loop (L19). A clause with a ``min_age`` or a predicate is not
+part of a loop here, because it may end the loop. A rule that takes time is not part of a loop either. A rule takes time
+if it awaits something, or if it is a plain function that calls code outside its context.
 """
 
 from __future__ import annotations

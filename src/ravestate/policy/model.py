@@ -52,7 +52,7 @@ class SignalPlan:
     conflict_sets: tuple[tuple[Clause, ...], ...] = ()
     """Groups of clauses that compete for each spike of the signal; the best clause of a group comes first."""
     halves: tuple[Half, ...] = ()
-    """The listeners whose spikes are held without an activation."""
+    """Groups of listeners whose first spikes wait without an activation."""
     watchers: tuple[Need, ...] = ()
     """The needs for this signal in `until` conditions (L21)."""
     retain: float = -1.0
@@ -132,12 +132,13 @@ class Clause:
     """The conjunction as text."""
     needs: tuple[Need, ...] = ()
     guards: tuple[tuple[SlotPlan, Holds], ...] = ()
+    """The clause's predicates on slots, each with its slot."""
     signals: tuple[Signal[Any], ...] = ()
     """The signals of the clause's constraints, as declared."""
     least: int = 0
     """The pathway with the least information, as a set of places (`Completion`)."""
     utility: float = 0.0
-    """The information of that pathway, plus that of the clause's predicates, in nats (L9)."""
+    """The information of the pathway `least` and of the clause's predicates, in nats (L9)."""
     base: float = 0.0
     """The utility times the rule's weight; a utility of 0 counts as `NO_INFORMATION`."""
     all_bits: int = 0
@@ -181,7 +182,7 @@ class RulePlan:
     readable: frozenset[int] = frozenset()
     """The numbers of the slots that the rule reads or writes."""
     views: tuple[SlotPlan, ...] = ()
-    """The same slots, in the same order."""
+    """The records of the slots in `readable`."""
     emits: frozenset[int] = frozenset()
     """The numbers of the signals that the rule declares in ``emits``."""
     raises: tuple[int, ...] = ()
@@ -201,7 +202,7 @@ class RulePlan:
 
 @dataclass(slots=True, eq=False, repr=False)
 class Half:
-    """Needs for one signal that the engine treats alike. Each belongs to a clause with two needs.
+    """Needs for one signal; the engine treats them alike. Each need belongs to a clause with two needs.
 
     The half holds the first spike of such a clause without an activation.
 

@@ -1,8 +1,8 @@
 """All pathways of a clause (L8), for explanations.
 
-An *alternative* of a signal is a set of signals that together may cause it. To make a pathway of a signal, choose one of
-its alternatives, and one pathway of each signal in the alternative. The union of these pathways and the signal itself is
-the pathway.
+An *alternative* of a signal is a set of signals that together may cause it. To make a pathway of a signal, choose one
+of its alternatives, and one pathway of each signal in the alternative. The union of these pathways and the signal
+itself is the pathway.
 
 The search walks from a signal to its causes, and notes its *way*: the signals that it has passed. It ends at a signal
 that is already on the way, because the causes form a cycle there. So the pathways of a signal depend on the way to the

@@ -126,9 +126,10 @@ class Policy:
         return find_conflicts(self)
 
     def findings(self, source: Source | None = None) -> tuple[Finding, ...]:
-        """Return remarks on probable mistakes: rules that cannot run or win, endless loops, ties, signals without listeners.
+        """Return remarks on probable mistakes: rules that cannot run or win, endless loops, ties, signals without
+        listeners.
 
-        A rule has at most one finding of each kind. If several rules tie with it, the finding names the first declared.
+        A rule has at most one finding of each kind. If several rules tie with it, the finding names the first of them.
 
         Args:
             source: A function that returns the source of a rule's function, such as ``inspect.getsource``. With it, the

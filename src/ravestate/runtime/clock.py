@@ -73,7 +73,7 @@ class Clock:
         return min((until for until, _ in self._sleepers.values()), default=None)
 
     def halt(self) -> None:
-        """Halt the clock. Calls of `sleep` do not end until it moves again."""
+        """Halt the clock. Calls of `sleep` do not end until the clock moves again."""
         if self._halted is None:
             self._halted = self.now()
             for sleeper, (until, timer) in self._sleepers.items():

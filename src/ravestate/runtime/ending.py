@@ -40,7 +40,7 @@ def _nonsense(rule: Rule[Any, Any], result: Any) -> RuleError:
         )
     return RuleError(
         f"rule {rule.name} ({rule.origin}) returned {short(result)}; a rule may only return None, rs.Resign(reason) "
-        "or rs.Retire(); write its result to a slot"
+        "or rs.Retire(); write the result to a slot"
     )
 
 

@@ -11,7 +11,8 @@ from ravestate.engine.effects import Ended, Spiked
 
 
 class Waiter:
-    """A task that waits for the next spike of a signal. If the spike does not come at once, `future` wakes the task."""
+    """A task that waits for the next spike of a signal. If the spike is not there yet, `future` wakes the task
+    later."""
 
     __slots__ = ("done", "error", "future", "payload")
 

@@ -208,7 +208,7 @@ class Runner:
         """Perform the effects of the loop's next turn now, because a task is about to wait for a spike.
 
         Other tasks get no turn meanwhile. So after `SETTLES` calls, the effects wait for the loop's next turn. In
-        virtual time, and inside a rule, they always wait for it.
+        virtual time, and inside a rule, the effects always wait for that turn.
         """
         if self._due and self._settled < SETTLES and not (self._pumping or self._is_virtual):
             self._settled += 1
@@ -346,7 +346,7 @@ class Runner:
             self.schedule()  # not now: the caller may be a task, and no task may be current when a rule starts
 
     def drive(self, time: float) -> None:
-        """Set the clock forward to `time` (seconds). It no longer moves by itself; see `Clock.drive`."""
+        """Set the clock forward to `time` (seconds). The clock then no longer moves by itself; see `Clock.drive`."""
         self.clock.drive(time)
         self._timer.clear()
         due = self._engine.next_deadline()

@@ -65,7 +65,7 @@ class Driver(Protocol):
         ...
 
     async def kill(self) -> None:
-        """End the agent without warning, as a crash does. If it keeps no files, only cut the users' connections."""
+        """End the agent without warning, as a crash does. If the platform keeps no files, only cut the connections."""
         ...
 
     async def restart(self) -> None:

@@ -8,7 +8,7 @@ const LEAST = 0.08;
 const MOST = 0.4;
 const GROWTH = 1.5;
 
-/** Seconds for which an end of the sound may turn out to be a gap. */
+/** If sound resumes within this many seconds after its end, the pause was a gap. */
 const GAP = 0.5;
 
 /** Samples over which dropped sound fades, so that it does not click. */
