@@ -125,7 +125,7 @@ class Lexicon:
     def _correction(self, word: str) -> str:
         """Return the frequent word that the user probably meant by an unknown `word`. If there is none, return `word`.
 
-        Short words resemble many others. In them, only swapped, doubled and missing letters are mended.
+        In a short word, which resembles many others, only swapped, doubled and missing letters are mended.
         """
         known = self.known(word) or (word.endswith("s") and self.known(word[:-1]))
         if len(word) < SHORTEST or not word.isalpha() or not word.isascii() or known:

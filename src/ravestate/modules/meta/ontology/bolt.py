@@ -24,7 +24,7 @@ META = "_ravestate"
 """The label of the node that stores the format version."""
 
 LIVELY = 5.0
-"""The idle seconds after which the driver tests a connection before use, since the server may have restarted."""
+"""The idle seconds after which the driver tests a connection before use, because the server may have restarted."""
 
 
 class BoltStore:

@@ -284,7 +284,7 @@ class EmbeddedStore:
             log.warning("memory %s: %s: %s", self._path, what, kept)
 
     def rest(self) -> None:
-        """Purge the file, unless a purge has failed after the last deletion: each pause would lead to a warning."""
+        """Purge the file, unless a purge has failed since the last deletion: every pause would log another warning."""
         if not self._has_failed:
             self.purge()
 

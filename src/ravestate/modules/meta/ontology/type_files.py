@@ -58,7 +58,7 @@ def types_in(paths: Iterable[Path]) -> Types:
     return _read(tuple((path.expanduser(), _state_of(path.expanduser())) for path in paths))
 
 
-@lru_cache(maxsize=8)  # cached, since each visitor to a page opens memory
+@lru_cache(maxsize=8)  # cached, because each visitor to a page opens memory
 def _read(own: tuple[tuple[Path, object], ...]) -> Types:
     built_in = files("ravestate.modules.meta.ontology") / "types.yaml"
     return read_types([built_in, *(path for path, _ in own)])

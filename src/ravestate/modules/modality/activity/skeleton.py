@@ -1,4 +1,4 @@
-"""Normalise a movement: a skeleton of unit size that faces the viewer, at a fixed frame rate, whatever the camera."""
+"""Normalise a movement: for any camera, a skeleton of unit size that faces the viewer, at a fixed frame rate."""
 
 from __future__ import annotations
 
@@ -109,7 +109,7 @@ def skeleton_of(poses: Sequence[Pose]) -> Skeleton | None:
 def _resampled(
     times: NDArray[np.float64], points: NDArray[np.float64]
 ) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
-    """Return the places of the landmarks (T, 33, 3) at `RATE`, and in which share of the frames each is visible (33,).
+    """Return the places of the landmarks (T, 33, 3) at `RATE`, and the share of frames in which each is visible (33,).
 
     While a landmark is invisible, its place is interpolated linearly.
     """

@@ -14,7 +14,7 @@ NEEDED = ("dlib", "cv2", "face_recognition_models")
 
 
 def eyes_python(given: Path | None = None) -> str:
-    """Return the interpreter for the vision worker: `given`, the one of ``make eyes``, or this one.
+    """Return the interpreter for the vision worker: `given`, the interpreter of ``make eyes``, or the current one.
 
     Raises:
         PlatformError: No interpreter has the packages; the message says how to get them.

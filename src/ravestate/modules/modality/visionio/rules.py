@@ -211,7 +211,7 @@ async def track(ctx: rs.RuleContext) -> None:
 
 
 def _reconsidered(ctx: rs.RuleContext, visitor: Visitor, face: FaceVec, decision: Decision) -> Visitor | None:
-    """Return the visitor of a track in the light of new vectors. None if the track now belongs to somebody else."""
+    """Return the visitor of a track in the light of new vectors. None if the track now belongs to another person."""
     settings: Settings = ctx.settings
     person = decision.person
     if person is None or person.id == visitor.node.id or person.id in visitor.mistaken:
@@ -248,7 +248,7 @@ async def _arrival(ctx: rs.RuleContext, decision: Decision) -> Visitor:
             known = person is not None
             return Visitor(key, node, known, since=now, seen=now, linked=True, faces=known, moving=True)
         if person is not None and before is None and item not in (None, name):
-            key = None  # the platform says that its user is somebody else
+            key = None  # the platform says that its user is another person
     node = person or ontology.Node("Person")
     if key is None:
         key = f"{KEY}{1 + max((int(k[len(KEY) :]) for k in (*users, *all_visitors) if k.startswith(KEY)), default=0)}"

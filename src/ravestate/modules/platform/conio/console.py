@@ -38,7 +38,7 @@ class Screen(Protocol):
         """Print a text of whole lines. Raise OSError if the output is gone."""
 
     def stream(self, piece: str) -> None:
-        """Print a piece of a line: at once on a terminal, but elsewhere only when the line is complete."""
+        """Print a piece of a line: immediately on a terminal, but elsewhere only when the line is complete."""
 
     def end(self) -> None:
         """End the line of pieces that `stream` has begun, if there is one."""
@@ -96,7 +96,7 @@ class Console:
 
     @property
     def interactive(self) -> bool:
-        """Whether a person types the lines. If not, all lines and the end of input may arrive at once."""
+        """Whether a person types the lines. If not, all lines and the end of input may arrive at the same time."""
         return self._screen.interactive
 
     async def __aenter__(self) -> Console:

@@ -51,7 +51,7 @@ async def connect(ctx: rs.RuleContext) -> rs.Resign | None:
         assert node is not None  # `_not_now` has checked this
         made = Connection(robot, node, ctx.sleep, lambda: ctx.now, settings.speech_timeout)
         _connected.add(node)
-        ctx[body] = made  # at once, so that the first words wait for this connection
+        ctx[body] = made  # before the connection is open, so that the first words wait for it
         await made.open()
 
         def hear(message: Any) -> None:
@@ -178,7 +178,7 @@ async def turn_to_sound(ctx: rs.RuleContext) -> rs.Resign | None:
     background=True,
 )
 async def think(ctx: rs.RuleContext) -> rs.Resign | None:
-    """Look up and away while an answer takes long. Look back when the answer comes."""
+    """Look up and away when an answer is slow. Look back when the answer comes."""
     if ctx[speaking]:
         return rs.Resign("the robot speaks")
     ctx[gaze] = THOUGHTFUL

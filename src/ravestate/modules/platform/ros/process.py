@@ -16,7 +16,7 @@ from .frames import Frames, Handle, Kind
 from .places import Place
 
 BACK_OFF = (0.1, 0.3, 1.0, 3.0)
-"""The waits before a new process replaces a dead one (seconds). They grow as long as the processes do no work."""
+"""The waits before a new process replaces a dead one (seconds). They grow until a process does some work."""
 
 ENDING = 3.0
 """A process may take this many seconds to end cleanly."""

@@ -43,7 +43,7 @@ QUIET = 0.25
 OFTEN, SELDOM = 2, 8
 """Compare the sounds once in this many frames: before and after the first decision. A comparison takes milliseconds."""
 GONE = 250
-"""The same as `DOUBTFUL`, but for a line that has had an echo (5 s). Somebody may have spoken louder than the echo."""
+"""The same as `DOUBTFUL`, but for a line that has had an echo (5 s). A person may have spoken louder than the echo."""
 
 
 class Leak:

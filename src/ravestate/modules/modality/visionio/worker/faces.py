@@ -14,7 +14,7 @@ import numpy as np
 from .picture import Picture
 
 SURE = 0.5
-"""A face that MediaPipe finds counts from this confidence on."""
+"""A face that MediaPipe finds counts if its confidence is at least this."""
 SAME = 0.3
 """Two boxes with at least this overlap (intersection over union) belong to the same face."""
 MOST = 3
