@@ -80,7 +80,7 @@ class Access:
         return _is_own(origin, host) or origin in self.origins
 
     def admits(self, token: str | None) -> bool:
-        """Return whether a token is right, or no token is needed. The time of the check reveals nothing about it."""
+        """Return whether a token is right, or no token is needed. The check takes the same time for any token."""
         return self._token is None or hmac.compare_digest(
             (token or "").encode("utf-8", "replace"), self._token.encode("utf-8", "replace")
         )

@@ -170,7 +170,7 @@ class LimitedWebSocket(WebSocketsSansIOProtocol):
 
 
 def _hang_up(transport: asyncio.Transport) -> None:
-    """Close a connection at once; the system drops the unread data instead of trying to deliver it."""
+    """Close a connection immediately; the system drops the unread data instead of trying to deliver it."""
     connected = transport.get_extra_info("socket")
     if connected is not None:
         with contextlib.suppress(OSError):

@@ -44,7 +44,7 @@ gestures: rs.Slot[frozenset[str]] = module.slot("gestures", frozenset(), type=fr
 """The activities that the agent's body can perform. A platform with a body writes this slot."""
 
 perform: rs.Signal[str] = module.signal("perform", payload=str)
-"""The agent's body shall perform an activity for the user to guess. The payload is a name in `gestures`."""
+"""The agent's body must perform an activity for the user to guess. The payload is a name in `gestures`."""
 
 moved: rs.Signal[Move] = module.signal("moved", payload=Move)
 """The user's words are a move in the game."""

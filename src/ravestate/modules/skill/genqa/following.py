@@ -100,7 +100,7 @@ def _about(answerer: Answerer, question: Question, reading: Reading, latest: str
 
 
 def _reckoned(heard: Parse, thread: Sequence[Turn], settings: Settings) -> Answer | None:
-    """Return the result of a sum; None if the utterance is no sum."""
+    """Return the result of a sum; None if the utterance is not a sum."""
     told, now = [focused(turn.question, turn.answer) for turn in thread], datetime.now().astimezone()
     text = heard.text
     try:

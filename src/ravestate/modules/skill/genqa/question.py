@@ -243,7 +243,7 @@ def _qualifiers(heard: Parse) -> tuple[list[tuple[str, ...]], list[str]]:
 
 
 def _is_superlative(tree: Tree, word: Word) -> bool:
-    """Return whether a word is a superlative. The *most* in *most people* is no superlative."""
+    """Return whether a word is a superlative. The *most* in *most people* is not a superlative."""
     before = tree.before(word)
     quantity = (
         word.low in ("most", "least") and tree.head(word).pos == "NOUN" and (before is None or before.low != "the")
