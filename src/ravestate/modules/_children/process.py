@@ -224,7 +224,7 @@ def take(
 ) -> ModelProcess:
     """Return the process for a backend and a configuration, and count one more user. Pair each call with `drop`.
 
-    The process may not have started yet.
+    The process might not have started yet.
 
     Args:
         backend, config, python: As for `ModelProcess`.

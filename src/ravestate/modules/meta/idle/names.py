@@ -1,4 +1,4 @@
-"""The module idle: its settings, signals and slot."""
+"""The module idle: its settings, signals and slots."""
 
 from __future__ import annotations
 

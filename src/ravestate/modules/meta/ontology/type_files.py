@@ -168,7 +168,7 @@ class _Reader:
         for other in (*among, *others):
             if other.lower() == name.lower() and (other != name or other in others):
                 place = self._places[other]
-                problem = "are too much alike: a type and a relation, or names that differ by capitals alone"
+                problem = "are too similar: names of types and relations must differ by more than capital letters"
                 raise fault(file, node, f"{name} and {other} ({place}) {problem}")
         self._places.setdefault(name, line_of(file, node))
 

@@ -30,7 +30,7 @@ JOINTS = (0, 13, 14, 15, 16, 25, 26, 27, 28)
 """The landmarks of the joints that move: head, elbows, wrists, knees, ankles; the left joint of a pair first."""
 ARMS = 5
 """The number of joints of the head and the arms, which come first in `JOINTS`. Their places are relative to the
-shoulders, those of the legs to the hips."""
+shoulders. The places of the legs are relative to the hips."""
 WIDTH = 0.72
 """The usual distance between the shoulders, in torso lengths. It replaces the torso as the scale if no hips are
 visible."""

@@ -350,7 +350,7 @@ async def learn_name(ctx: rs.RuleContext) -> rs.Resign | None:
     wrong = None
     if visitor.faces and visitor.known:
         strangers = [other for other in all_visitors.values() if not other.known]
-        if len(strangers) == 1:  # the name must be that of the only person whom the agent does not know
+        if len(strangers) == 1:  # the name must belong to the only person whom the agent does not know
             visitor = strangers[0]
         else:
             wrong, visitor = visitor, replace(visitor, mistaken=visitor.mistaken | {visitor.node.id})

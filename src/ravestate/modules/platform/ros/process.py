@@ -45,7 +45,7 @@ class BridgeProcess:
         self.restarts = 0
         """The number of processes that replaced a dead process."""
         self.failed: PlatformError | None = None
-        """Why no process can run; None if one can."""
+        """The reason why no process can run; None if a process can run."""
         self._place = place
         self._config = config
         self._handle = handle

@@ -61,7 +61,7 @@ class Leak:
         self._far_sound: NDArray[np.float32] = np.zeros(FAR, np.float32)
         self._strength: float | None = None  # the measured strength of the echo before cleaning
         self._unlike = 0.0  # how many frames (weighted) came since the last echo
-        self._limit = DOUBTFUL  # after so many such frames, the line counts as free of echo
+        self._limit = DOUBTFUL  # after this many such frames, the line counts as free of echo
         self._frame = 0  # how many frames had sound on both sides
         self._alike = 0  # how many comparisons in a row have found an echo
         self.echoes = False

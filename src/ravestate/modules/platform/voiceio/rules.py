@@ -364,7 +364,7 @@ async def resume(ctx: rs.RuleContext) -> rs.Resign | None:
     background=True,
 )
 async def fill_pause(ctx: rs.RuleContext) -> rs.Resign | None:
-    """Say a filler when the answer takes long."""
+    """Say a filler when the answer is slow."""
     settings: Settings = ctx.settings
     if not settings.filler_after or not settings.fillers or (talk := ctx[conversation]) is None:
         return rs.Resign("fillers are off, or the line is closed")

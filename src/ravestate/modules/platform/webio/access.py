@@ -94,7 +94,7 @@ class Access:
 
 
 def _is_own(origin: str, host: str) -> bool:
-    """Return whether an origin is that of the requested host itself."""
+    """Return whether an origin belongs to the requested host itself."""
     return origin.partition("://")[2] == host
 
 

@@ -181,7 +181,7 @@ class Ros1Node:
         return subscriber
 
     def check(self, topic, header):
-        """Warn the agent about each of its subscriptions to a topic whose type differs from that of a publisher."""
+        """Warn the agent about each of its subscriptions to a topic whose type differs from the publisher's type."""
         for channel, binding in list(self._bindings.items()):
             if header and binding["kind"] == "subscriber" and binding["name"] == topic and not _suits(binding, header):
                 self._pipe.note(channel, _mismatch(binding, header))
