@@ -8,7 +8,7 @@ import os
 import threading
 
 SETTLED = 1.0
-"""The seconds after the last load after which freed memory goes back to the system."""
+"""Freed memory goes back to the system this many seconds after the last load."""
 
 _OPTIONS = ((-8, "MALLOC_ARENA_MAX", 2), (-3, "MALLOC_MMAP_THRESHOLD_", 2**19))
 """Options of glibc: the number in malloc.h, the environment variable and the value.
@@ -18,7 +18,7 @@ The first option is the maximum number of heaps. The second is the size in bytes
 
 _lock = threading.Lock()
 _pending: list[threading.Timer] = []
-"""The timer of the next return of memory; at most one."""
+"""The timer for the next return of memory to the system; the list has at most one."""
 
 
 def keep_few_heaps() -> None:

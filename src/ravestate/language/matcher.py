@@ -37,9 +37,9 @@ SHARPNESS = 4.0
 SPELLING = 0.1
 """The weight of similar spelling, which helps with typing errors. Similar meaning has the weight 1."""
 SHAPE = 0.6
-"""The share of the similarity of two sentences that is lost if their shapes have nothing in common."""
+"""If the shapes of two sentences have nothing in common, their similarity loses this share."""
 COMMON = 0.1
-"""A similarity that the kernel adds for any two sentences. It allows for classes of different sizes."""
+"""A constant that is added to the similarity of any two sentences, so that classes may differ in size."""
 RIDGE = 0.1
 """The ridge penalty: it limits the weight of a single example."""
 DOUBT = 0.2

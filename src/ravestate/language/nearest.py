@@ -20,9 +20,9 @@ if TYPE_CHECKING:
     from numpy.typing import NDArray
 
 SHAPE = 0.12
-"""The share of the similarity of two sentences that is lost if their shapes have nothing in common."""
+"""If the shapes of two sentences have nothing in common, their similarity loses this share."""
 ASKING = 0.05
-"""The share of the similarity that is lost between a question and a statement."""
+"""The similarity of a question and a statement loses this share."""
 
 
 @dataclass(frozen=True, slots=True)

@@ -266,7 +266,7 @@ def make_client(base_url: str, key: str, timeout: Any) -> httpx2.AsyncClient:
     return httpx2.AsyncClient(
         headers={"Authorization": f"Bearer {key}"} if key else {},
         timeout=timeout,
-        trust_env=not here,  # a proxy on another machine would take localhost for itself
+        trust_env=not here,  # a proxy on another machine would look for localhost on its own machine
         verify=not base_url.startswith("http:"),  # certificates take 30 ms to read, and http needs none
     )
 

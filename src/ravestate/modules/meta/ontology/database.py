@@ -28,11 +28,11 @@ FILE_FORMAT = 2
 """The version of the format of nodes and relations in the file; a new format has a greater number.
 
 Format 1 had a table for each type and each relation, and pairs of types for each relation. Ladybug takes 3.5 MB of main
-memory for a table of nodes, and 10 MB for a table of relations that has been written. Format 2 has one table of each.
+memory for a table of nodes, and 10 MB for a table of relations that has been written. Format 2 has only two tables.
 """
 
 META = "_ravestate"
-"""The table of the format's version, and of the mark that deleted nodes have left bytes behind."""
+"""The table with the format's version, and with a mark if deleted nodes have left bytes behind."""
 
 NODE = "_node"
 """The table of all nodes. The id of a node begins with its type: ``City:...``."""

@@ -41,7 +41,7 @@ REMEMBERED = 64
 RUNNERS_UP = 3
 """The maximum number of next most likely names."""
 FAR = 3.0
-"""A next most likely activity may be this many times as far away as the limit. Farther activities look too
+"""An activity farther away than this many times the limit is not among the next most likely ones: it looks too
 different."""
 
 

@@ -53,7 +53,7 @@ async def watch(ctx: rs.RuleContext) -> rs.Resign | None:
     if frames is None and _is_served(ctx):
         return rs.Resign("the user's platform has no camera in visionio.camera now")
     if frames is not None and ctx.payload(camera.changed) is None:
-        return rs.Resign("the new camera has a run of its own")
+        return rs.Resign("another run of this rule watches the new camera")
     view = Watch(settings, frames, ctx.log)
     tracks = Tracks(settings.sure)
     want = ["faces", "pose"] if _is_heard(ctx, pose) or _is_heard(ctx, activity.recognised) else ["faces"]
@@ -220,7 +220,7 @@ def _reconsidered(ctx: rs.RuleContext, visitor: Visitor, face: FaceVec, decision
         return _recognised(ctx, visitor, person)
     else:
         alike = False
-    # Even if memory knows this face under another name, it may be the visitor's.
+    # Even if memory knows this face under another name, it may be the visitor's face.
     if alike or any(visitor.resembles(vector, settings.threshold) for vector in decision.vectors):
         return visitor
     ctx[visitors].add(visitor.key, replace(visitor, tracks=visitor.tracks - {face.track}))

@@ -32,7 +32,7 @@ class Visitor:
         vectors: Their best vectors of this visit, each with its quality, best first.
         linked: Whether they are a user whom a platform has added.
         faces: Whether memory has their face, or the agent has asked them. If not, the agent may ask.
-        mistaken: The ids of people in memory whom they have turned out not to be.
+        mistaken: The ids of people in memory with whom the agent has confused them.
         moving: Whether they are taking the place of a platform's user. The agent removes that user for a moment.
     """
 

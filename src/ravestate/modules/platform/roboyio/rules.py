@@ -22,7 +22,7 @@ THOUGHTFUL = Pose(yaw=0.25, pitch=0.2)
 _connected: WeakSet[Node] = WeakSet()
 """The nodes that have a robot. The slot `body` does not suffice: two runs of `connect` may begin at the same time."""
 THINKS_AFTER = 0.6
-"""A robot shows that it thinks after it has worked for this many seconds."""
+"""After this many seconds of work, a robot shows that it is thinking."""
 
 
 @module.rule(

@@ -30,7 +30,7 @@ MOST = 100  # the maximum number of updates in an answer
 PATIENCE = 10  # the bot waits this many seconds longer for an answer than `POLL`
 ANSWER = 20.0  # the maximum number of seconds to wait for the answer to any other request
 CONFLICTS = 4  # after this many conflicts in a row, the bot gives up, because another program polls the same bot
-SETTLED = 60.0  # a bot that has run this many seconds never gives up: a program that came later should do so
+SETTLED = 60.0  # a bot that has run this many seconds never gives up: the program that came later should
 CONFLICT_WAIT = 2.0  # the first wait after a conflict (seconds); after a crash, the server still holds the old request
 SECRET = "x-telegram-bot-api-secret-token"
 

@@ -41,7 +41,8 @@ DOUBTFUL = 12
 QUIET = 0.25
 """A frame in which the microphone is silent counts only this much, because an echo may be late."""
 OFTEN, SELDOM = 2, 8
-"""Compare the sounds once in this many frames: before and after the first decision. A comparison takes milliseconds."""
+"""A comparison takes milliseconds, so the sounds are compared once in this many frames, before and after the first
+decision."""
 GONE = 250
 """The same as `DOUBTFUL`, but for a line that has had an echo (5 s). A person may have spoken louder than the echo."""
 

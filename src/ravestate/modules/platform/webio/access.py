@@ -15,7 +15,7 @@ from .names import ORIGIN
 if TYPE_CHECKING:
     from .names import Settings
 
-PAUSE = 1.0  # the server waits this many seconds before it refuses a wrong token, so that guessing takes long
+PAUSE = 1.0  # the server waits this many seconds before it refuses a wrong token, so that guessing is slow
 
 
 def is_local(host: str) -> bool:

@@ -49,7 +49,7 @@ PRIORITY = 40.0
 JUST = 0.1
 """The end of the agent's speech counts as the end of its last word if it is at most this many seconds ago."""
 SPEAKING = 6.0
-"""The longest time (seconds) for which the agent waits until its last word has sounded."""
+"""The longest time (seconds) that the agent waits for its last word to sound."""
 
 
 def is_on(now: Game) -> bool:

@@ -43,7 +43,7 @@ NAMES, KINDS = 0.4, 0.7
 WORDS = 24
 """The maximum number of words to search for."""
 NOT_STATED = "no document states all of it"
-"""The reason for no answer if no passage meets the qualifiers of a question."""
+"""The reason why there is no answer if no passage meets the qualifiers of a question."""
 
 
 @dataclass(frozen=True, slots=True)
