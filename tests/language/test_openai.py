@@ -242,7 +242,7 @@ PIECE = 'data: {"choices":[{"delta":{"content":"Hi"}}]}\n\n'
         (refusing("403 Forbidden", ""), r"answers 403 \(no reason\): set wildtalk.api_key"),
         (refusing("404 Not Found", '{"error": "model not found"}'), r"404 \(model not found\): does it know the model 'tiny'.*/v1"),
         (refusing("404 Not Found", "<h1>Nothing</h1>", "text/html"), r"404 \(<h1>Nothing</h1>\)"),
-        (refusing("307 Moved", "", Location="http://there/v1"), r"moved to 'http://there/v1': change wildtalk.base_url"),
+        (refusing("307 Moved", "", Location="http://there/v1"), "moved to 'http://there/v1': change wildtalk.base_url"),
         (refusing("400 Bad Request", '{"detail": "too long"}'), r"400 \(too long\): check wildtalk.model"),
         (refusing("400 Bad Request", '{"error": {"code": "unsupported_value", "param": "model"}}'), "400"),
         (refusing("429 Too Many", "{}"), "quota"),

@@ -39,7 +39,7 @@ _PLAYFUL = re.compile(
 _SUBJECTS = word_set("i you he she it we they")
 _LINKS = word_set("and then now so but")
 _GOES_ON = word_set("is was are were be means of for to that which by in on at s")
-"""A formula before one of these words is part of a sentence, and not an act: "thanks to the rain", "hello is a song"."""
+"""A formula before one of these words is part of a sentence, not an act: "thanks to the rain", "hello is a song"."""
 
 
 def heard(text: str, names: Collection[str] = ()) -> tuple[str, ...]:

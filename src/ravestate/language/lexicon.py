@@ -150,7 +150,7 @@ class Lexicon:
 
 
 def _american(word: str) -> set[str]:
-    """Return American spellings of a word, each with one British group of letters replaced: *apologize* for *apologise*."""
+    """Return American spellings of a word, each with one British letter group replaced: *apologize* for *apologise*."""
     return {word.replace(british, american, 1) for british, american in _BRITISH} - {word}
 
 

@@ -119,7 +119,7 @@ class ModelProcess:
         with self._turn:
             if unwanted is not None and unwanted.is_set():
                 raise PlatformError(
-                    f"{self._backend.owner}: a request to {self._backend.name} was dropped, because a newer one replaces it"
+                    f"{self._backend.owner}: a request to {self._backend.name} was dropped: a newer one replaces it"
                 )
             self._start()
             answer, sound = self._exchange(header, data, seconds)

@@ -27,7 +27,7 @@ if TYPE_CHECKING:
     from numpy.typing import NDArray
 
 OWN = 0.9
-"""The weight of an activity's own variance in its deviations. An average activity's variance has the remaining weight."""
+"""The weight of an activity's own variance in its deviations. An average activity's variance has the remainder."""
 RIDGE = 0.05
 """This variance is added to every feature, and all correlations shrink by this share."""
 SPREAD = 0.8

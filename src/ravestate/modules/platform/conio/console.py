@@ -138,7 +138,7 @@ class Console:
             self._safely(lambda: self._screen.show(text))
 
     def grow(self, piece: str) -> None:
-        """Print `piece` after the earlier pieces of its text. If the output is not a terminal, print only whole lines."""
+        """Print `piece` after the earlier pieces of its text. Without a terminal, print only whole lines."""
         piece = without_controls(piece)
         if piece:
             self._streamed += piece

@@ -95,7 +95,7 @@ class LimitedHTTP(H11Protocol):
         self.loop.call_later(TIMEOUT, self._check)
 
     def _is_late(self, request: RequestResponseCycle) -> bool:
-        """Return whether the client sends a request too slowly on average. Time spent waiting for the server is left out."""
+        """Return whether the client sends a request too slowly on average, apart from its waits for the server."""
         due = LOWEST_RATE * TIMEOUT
         behind = self._late[1] if self._late[0] is request else 0.0
         waits = self.flow.read_paused or not request.more_body

@@ -75,8 +75,9 @@ class Server:
         self._settings: Settings = agent.settings["webio"]  # type: ignore[assignment]  # the module's own
         if self._settings.token is None and not is_local(self._settings.host):
             raise PlatformError(
-                f"webio: other machines can reach {self._settings.host!r}, so a token is needed: set RAVESTATE_WEBIO_TOKEN "
-                "to the output of, for example, python -c 'import secrets; print(secrets.token_urlsafe())'"
+                f"webio: other machines can reach {self._settings.host!r}, so a token is needed: set "
+                "RAVESTATE_WEBIO_TOKEN, for example to the output of "
+                "python -c 'import secrets; print(secrets.token_urlsafe())'"
             )
         self._socket: socket.socket | None = None
         self._uvicorn: _Uvicorn | None = None

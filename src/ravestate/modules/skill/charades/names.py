@@ -38,7 +38,7 @@ game: rs.Slot[Game] = module.slot("game", Game(), type=Game)
 """The state of the game, with the score."""
 
 sightings: rs.Slot[tuple[tuple[bool, activity.Activity], ...]] = module.slot("sightings", ())
-"""The activities recognised in this round, each with a flag: true if the agent was watching, false if it was counting."""
+"""The activities recognised in this round, each with a flag: true while watching, false during the countdown."""
 
 gestures: rs.Slot[frozenset[str]] = module.slot("gestures", frozenset(), type=frozenset, input=True)
 """The activities that the agent's body can perform. A platform with a body writes this slot."""

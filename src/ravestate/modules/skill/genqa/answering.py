@@ -24,7 +24,7 @@ from .stems import Stems
 RETRIEVED = 16
 """The maximum number of passages in each of two searches: for any word of the question, and for all its words."""
 READ = (1, 1, 2, 4, 8, 8)
-"""The sizes of the batches in which passages are read, until one is good enough: four batches, or all for a follow-up."""
+"""The sizes of the batches in which passages are read until one is good enough. Only a follow-up uses the last two."""
 GOOD, VERY_GOOD, HOPELESS = 7.5, 9.0, -4.0
 """Best scores that end the reading: `VERY_GOOD` after the first passage, and `GOOD` after later passages. `HOPELESS` or
 less ends it after three passages, except for a follow-up."""

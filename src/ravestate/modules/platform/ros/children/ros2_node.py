@@ -96,7 +96,7 @@ class Ros2Node:
         self._executor.wake()
 
     def _look_at_types(self):
-        """Warn about each node that uses another type for a topic. ROS 2 neither connects such nodes nor reports them."""
+        """Warn about each node with another type for a topic. ROS 2 neither connects such nodes nor reports them."""
         for channel, binding in list(self._bindings.items()):
             name, type_ = binding["name"], binding["type"]
             if binding["kind"] == "subscriber":
