@@ -133,7 +133,7 @@ class Encoder:
         if self._mean is None:
             self._mean = _pools_by_mean(model.folder)
         rows = np.zeros((len(texts), model.width), dtype=np.float32)
-        # One text per run: a quantised model takes its scale from the batch, so texts would change each other's vectors.
+        # One text per run: a quantised model takes its scale from the batch, so other texts would change a vector.
         for number, text in enumerate(texts):
             _, hidden, mask = next(model.run([text]))
             rows[number] = _pooled(hidden, mask, self._mean)[0]

@@ -338,7 +338,7 @@ def _age(node: Node) -> tuple[str, str]:
 
 
 def _setting(variable: str, values: Mapping[str, Any]) -> str:
-    """Return the Cypher clause that sets properties. Its parameters have the prefix ``p_``, unlike parameters for ids."""
+    """Return the Cypher clause that sets properties. Its parameters begin with ``p_``; parameters for ids do not."""
     settings = ", ".join(f"{variable}.`{key}` = $p_{key}" for key in values)
     return f" SET {settings}" if settings else ""
 

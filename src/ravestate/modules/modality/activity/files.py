@@ -44,7 +44,8 @@ def read(file: Path) -> tuple[str, tuple[Pose, ...]]:
         raise PlatformError(f"activity: {file} cannot be read: {error.strerror or error}") from None
     except (KeyError, ValueError, EOFError, AttributeError, TypeError, zipfile.BadZipFile) as error:
         raise PlatformError(
-            f"activity: {file} is not a file of landmarks ({error}): it must be .npz with times (T,) and points (T, 33, 4)"
+            f"activity: {file} is not a file of landmarks ({error}): "
+            "it must be an .npz file with times (T,) and points (T, 33, 4)"
         ) from None
     if times.ndim != 1 or len(times) != len(points):
         raise PlatformError(f"activity: {file} has {times.size} times for {len(points)} poses: give one for each")

@@ -9,7 +9,7 @@ from pathlib import Path
 from ravestate.errors import PlatformError
 from ravestate.folders import user_folder
 
-MEND = "`make eyes` sets them up, or pip install 'ravestate[eyes]', or name the Python that has them in visionio.python"
+MEND = "run `make eyes`, or pip install 'ravestate[eyes]', or set visionio.python to a Python that has the packages"
 NEEDED = ("dlib", "cv2", "face_recognition_models")
 
 
