@@ -59,8 +59,8 @@ def test_guess_names_a_movement_that_teach_has_learnt(
         (["guess", "{tmp}/missing.npz"], 2, "there is no file"),
         (["guess", "{tmp}"], 2, "is a folder"),
         (["teach", " ", "{tmp}/bad.npz"], 2, "the name is empty"),
-        (["guess", "{tmp}/bad.npz"], 1, "no file of landmarks"),
-        (["teach", "x", "{tmp}/bad.npz"], 1, "no file of landmarks"),
+        (["guess", "{tmp}/bad.npz"], 1, "not a file of landmarks"),
+        (["teach", "x", "{tmp}/bad.npz"], 1, "not a file of landmarks"),
     ],
 )
 def test_wrong_use_is_reported(

@@ -78,8 +78,8 @@ def test_check_lists_the_bound_slots_and_says_how_to_fix_faults(
         "FAULT    agent:number  subscriber of /chat (std_msgs/Int32): the other end has std_msgs/msg/String: write "
         "type='std_msgs/String'",
         "ok       agent:lamp    service of /lamp (std_srvs/SetBool): 1 server",
-        "FAULT    agent:lost    publisher of /lost (std_msgs/String): no subscribers; of this type there is /chat: write "
-        "remap or another name",
+        "FAULT    agent:lost    publisher of /lost (std_msgs/String): no subscribers; this type is used by /chat: "
+        "write remap or another name",
         "FAULT    agent:own     publisher of /own (own_msgs/Thing): there is no definition of own_msgs/msg/Thing: install "
         "its package, or name its file in ros2.definitions",
     ]

@@ -58,7 +58,7 @@ def test_files_that_are_not_pictures_are_reported_and_other_files_are_read(
     bad = tmp_path / "bad.jpg"
     bad.write_bytes(b"not a picture")
     code, out, errors = call(capsys, "vision", "who", str(bad), str(photo("hanks")))
-    assert code == 1 and "bad.jpg: the bytes are no picture" in errors and len(rows(out)) == 1
+    assert code == 1 and "bad.jpg: the bytes are not a readable picture" in errors and len(rows(out)) == 1
     code, _, errors = call(capsys, "vision", "who", str(tmp_path / "none.jpg"))
     assert code == 2 and "there is no file" in errors
     code, _, errors = call(capsys, "vision", "who", str(tmp_path))

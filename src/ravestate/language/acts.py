@@ -39,7 +39,7 @@ _PLAYFUL = re.compile(
 _SUBJECTS = word_set("i you he she it we they")
 _LINKS = word_set("and then now so but")
 _GOES_ON = word_set("is was are were be means of for to that which by in on at s")
-"""Words that make the formula before them part of a sentence, and no act: "thanks to the rain", "hello is a song"."""
+"""A formula before one of these words is part of a sentence, not an act: "thanks to the rain", "hello is a song"."""
 
 
 def heard(text: str, names: Collection[str] = ()) -> tuple[str, ...]:
@@ -102,7 +102,7 @@ def _read(sentences: Sequence[str]) -> list[_Sentence]:
 
 
 def _taken_back(matcher: Matcher, found: Match | None) -> bool:
-    """Return whether a negation cancels a wish. "Don't talk" stays a wish, because the negation is part of it."""
+    """Return whether a negation cancels a wish. "Don't talk" stays a wish, because the wish itself is negative."""
     if found is None or found.name not in WISHES or plain(found.text) in matcher.exact:
         return False
     asserted = _NEGATION.sub("", found.text, count=1)

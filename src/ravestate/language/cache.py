@@ -18,13 +18,13 @@ if TYPE_CHECKING:
     from numpy.typing import NDArray
 
 BYTES = 80_000_000
-"""The maximum size of the cache. Beyond it, the oldest files are removed. Many small files push out no large one."""
+"""The maximum size of the cache. When the cache exceeds this size, its oldest files are removed."""
 
 
 def cached(key: object, compute: Callable[[], Mapping[str, NDArray[Any]]]) -> Mapping[str, NDArray[Any]]:
     """Return the arrays of `compute`; read them from a file if an earlier call with the same key wrote it.
 
-    If the file is missing or broken, or the folder cannot be written, the function computes the arrays again.
+    If the file is missing or broken, or the folder cannot be written, `compute` runs again.
 
     Args:
         key: All inputs that the arrays depend on, as a value that JSON can write.
@@ -49,7 +49,7 @@ _unwritten: dict[Path, NDArray[Any]] = {}
 
 
 def mapped(key: object, compute: Callable[[], NDArray[Any]]) -> NDArray[Any]:
-    """Return the array of `compute` as a read-only map of a file, so that it needs no memory. See `cached`.
+    """Return the array of `compute` as a read-only, memory-mapped file, so that it needs no memory. See `cached`.
 
     If the file cannot be written, the array stays in memory.
     """
@@ -77,7 +77,7 @@ def mapped(key: object, compute: Callable[[], NDArray[Any]]) -> NDArray[Any]:
 
 
 def _sum(file: Path) -> bytes:
-    """Return a check sum over a file, which needs no memory for the file: 20 MB take 20 ms."""
+    """Return the checksum of a file without reading the file into memory as a whole. 20 MB take 20 ms."""
     found = 0
     with file.open("rb") as parts:
         while part := parts.read(1 << 20):
@@ -109,7 +109,7 @@ def _write(file: Path, write: Callable[[IO[bytes]], object]) -> bool:
 
 
 def _limit(folder: Path) -> None:
-    """Remove the oldest files of the cache, down to its size."""
+    """Remove the oldest files of the cache until it has at most `BYTES`."""
     found: list[tuple[int, int, str]] = []
     for entry in os.scandir(folder):
         with contextlib.suppress(FileNotFoundError):  # another process has renamed or removed this file

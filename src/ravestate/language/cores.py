@@ -8,7 +8,7 @@ import os
 def cores() -> int:
     """Return the number of cores that this process may use; the variable ``OMP_NUM_THREADS`` may lower it.
 
-    More threads than cores wait for each other.
+    Any more threads than cores would only wait for each other.
     """
     allowed = getattr(os, "sched_getaffinity", None)  # only Linux has this function
     found = len(allowed(0)) if allowed is not None else os.cpu_count() or 1

@@ -117,7 +117,7 @@ class Encoder:
 
     @property
     def identity(self) -> list[object]:
-        """The folder, size and date of the model, and how it multiplies; together they identify its vectors."""
+        """The folder, size and date of the model, and its way of multiplying; together they identify its vectors."""
         folder = self._loaded().folder
         return [str(folder), self.size, (folder / "model.onnx").stat().st_mtime_ns, "without overflow"]
 
@@ -133,7 +133,7 @@ class Encoder:
         if self._mean is None:
             self._mean = _pools_by_mean(model.folder)
         rows = np.zeros((len(texts), model.width), dtype=np.float32)
-        # One text per run: a quantised model scales over a batch, so each text would change the others' vectors.
+        # One text per run: a quantised model takes its scale from the batch, so other texts would change a vector.
         for number, text in enumerate(texts):
             _, hidden, mask = next(model.run([text]))
             rows[number] = _pooled(hidden, mask, self._mean)[0]

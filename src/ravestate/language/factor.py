@@ -14,8 +14,9 @@ BLOCK = 256
 def factor(matrix: NDArray[Any]) -> NDArray[Any]:
     """Return the inverse of the Cholesky factor of a symmetric, positive definite matrix of shape (n, n).
 
-    If the result is R, the inverse of the matrix is ``R.T @ R``. It is put together from the result for the first quarter and
-    that for its Schur complement. So nearly all the work is products of large matrices, the fastest work of a processor.
+    If the result is R, the inverse of the matrix is ``R.T @ R``. The function factors the upper left quarter and its
+    Schur complement, and joins both results. So nearly all the work is products of large matrices, the fastest work of
+    a processor.
     """
     import numpy as np
 

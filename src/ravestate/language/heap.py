@@ -8,26 +8,26 @@ import os
 import threading
 
 SETTLED = 1.0
-"""The seconds after the last load after which freed memory goes back to the system."""
+"""Freed memory goes back to the system this many seconds after the last load."""
 
 _OPTIONS = ((-8, "MALLOC_ARENA_MAX", 2), (-3, "MALLOC_MMAP_THRESHOLD_", 2**19))
 """Options of glibc: the number in malloc.h, the environment variable and the value.
 
-They are the maximum number of heaps, and the size in bytes from which a block is outside of them.
+The first option is the maximum number of heaps. The second is the size in bytes from which a block is outside them.
 """
 
 _lock = threading.Lock()
 _pending: list[threading.Timer] = []
-"""The timer of the next return of memory; at most one."""
+"""The timer for the next return of memory to the system; the list has at most one."""
 
 
 def keep_few_heaps() -> None:
     """Let the threads of the process share two heaps, and keep large blocks out of them.
 
     By default glibc makes up to eight heaps per core. Each keeps tens of megabytes that a model has used in its thread.
-    Glibc also puts ever larger blocks into the heaps, and between the small ones, freed blocks cannot go back to the
-    system. The environment variables ``MALLOC_ARENA_MAX`` and ``MALLOC_MMAP_THRESHOLD_`` take precedence. If the C
-    library is not glibc, do nothing.
+    Glibc also puts ever larger blocks into the heaps. A freed block between small blocks cannot go back to the system.
+    The environment variables ``MALLOC_ARENA_MAX`` and ``MALLOC_MMAP_THRESHOLD_`` take precedence. If the C library is
+    not glibc, do nothing.
     """
     for option, name, value in _OPTIONS:
         if name not in os.environ:
@@ -42,7 +42,7 @@ def note_load() -> None:
     would soon take the same memory again.
     """
     timer = threading.Timer(SETTLED, give_back)
-    timer.daemon = True  # it keeps no process alive
+    timer.daemon = True  # the timer must not keep the process alive
     with _lock:
         for earlier in _pending:
             earlier.cancel()

@@ -125,7 +125,7 @@ class Lexicon:
     def _correction(self, word: str) -> str:
         """Return the frequent word that the user probably meant by an unknown `word`. If there is none, return `word`.
 
-        Short words resemble many others. In them, only swapped, doubled and missing letters are mended.
+        In a short word, which resembles many others, only swapped, doubled and missing letters are mended.
         """
         known = self.known(word) or (word.endswith("s") and self.known(word[:-1]))
         if len(word) < SHORTEST or not word.isalpha() or not word.isascii() or known:
@@ -150,7 +150,7 @@ class Lexicon:
 
 
 def _american(word: str) -> set[str]:
-    """Return the spellings of a word that differ in a British and an American ending: *apologize* for *apologise*."""
+    """Return American spellings of a word, each with one British letter group replaced: *apologize* for *apologise*."""
     return {word.replace(british, american, 1) for british, american in _BRITISH} - {word}
 
 

@@ -31,6 +31,6 @@ def note_prompt() -> None:
 def wait_for_prompt() -> bool:
     """Wait until an expected prompt has appeared; return false if it has not after `LONGEST`.
 
-    Background rules that load much begin with this.
+    A background rule that loads a large library or model calls this first.
     """
     return _shown.wait(LONGEST)

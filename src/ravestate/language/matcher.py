@@ -37,9 +37,9 @@ SHARPNESS = 4.0
 SPELLING = 0.1
 """The weight of similar spelling, which helps with typing errors. Similar meaning has the weight 1."""
 SHAPE = 0.6
-"""The share of their similarity that two sentences lose if their shapes have nothing in common."""
+"""If the shapes of two sentences have nothing in common, their similarity loses this share."""
 COMMON = 0.1
-"""The least similarity of any two sentences. It allows classes of different sizes."""
+"""A constant that is added to the similarity of any two sentences, so that classes may differ in size."""
 RIDGE = 0.1
 """The ridge penalty: it limits the weight of a single example."""
 DOUBT = 0.2
@@ -98,7 +98,7 @@ class Matcher:
             least: The confidence below which a sentence belongs to no class.
             shapes: The weight of the shape of a sentence (the persons that it mentions, whether it asks), 0 to 1.
             centre: The margin that has the confidence 0.5. By default, the matcher learns it by matching each example
-                against the others. Pass 0 for classes of about three examples: the others would be too few.
+                against the others. Pass 0 for classes of about three examples, which are too few to learn from.
             encoder: The encoder; by default the shared one.
         """
         pairs = [(plain(text), name) for name, texts in examples.items() for text in texts]
@@ -236,7 +236,7 @@ class _Learnt:
         targets = np.eye(len(self._classes), dtype=np.float32)[self._of]
         factored = factor(kernel)
         weights = factored.T @ (factored @ targets)
-        # The scores of each example by a classifier that has learnt all the others. They need the diagonal of the inverse.
+        # The scores of each example by a classifier that has learnt all the others, from the diagonal of the inverse.
         left_out = targets - weights / np.square(factored).sum(axis=0)[:, None]
         margins, others = margins_of(left_out), left_out.argmax(axis=1)
         wrong = np.flatnonzero((others != self._of) & (margins > DOUBT))

@@ -57,7 +57,7 @@ def folder_of(folder: Path | str | None, bundled: str) -> Path:
     if folder:
         path = Path(folder).expanduser().absolute()
         if not path.is_dir():
-            raise PlatformError(f"the sentence model {str(folder)!r} is not a folder: name one with model.onnx")
+            raise PlatformError(f"the sentence model {str(folder)!r} is not a folder: name a folder with model.onnx")
         return path
     for place in folders_of(SENTENCE_MODELS):
         path = place / "models" / "data" / bundled

@@ -1,6 +1,6 @@
 """Find the example that a sentence resembles most: by meaning, and by its pronouns (*my* or *your*).
 
-A `Matcher` learns classes of many examples. `Nearest` compares with thousands of single examples, and learns nothing.
+A `Matcher` learns classes of many examples. `Nearest` learns nothing: it compares a sentence with each single example.
 """
 
 from __future__ import annotations
@@ -21,9 +21,9 @@ if TYPE_CHECKING:
     from numpy.typing import NDArray
 
 SHAPE = 0.12
-"""The share of their similarity that two sentences lose if their shapes have nothing in common."""
+"""If the shapes of two sentences have nothing in common, their similarity loses this share."""
 ASKING = 0.05
-"""The share of their similarity that a question and a statement lose."""
+"""The similarity of a question and a statement loses this share."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -47,8 +47,8 @@ class Nearest:
         Args:
             examples: The sentences.
             encoder: By default the shared encoder.
-            searched: The number of examples that `nearest` searches, from the first; by default all. Only
-                `compared` uses the others; their vectors do not stay in memory.
+            searched: `nearest` searches only this many examples, from the first on; by default all. Only `compared`
+                uses the other examples; their vectors do not stay in memory.
         """
         self._examples = [plain(text) for text in examples]
         self._searched = len(examples) if searched is None else searched
@@ -81,11 +81,11 @@ class Nearest:
         return self._learnt.vectors
 
     def similarities(self, text: str, places: Sequence[int]) -> list[float]:
-        """Return the cosine similarity of a text to the examples at some places. Until `load`, that is 0.0."""
+        """Return the cosine similarity of a text to the examples at `places`. Before `load`, each similarity is 0.0."""
         return [0.0] * len(places) if self._learnt is None else self._learnt.similarities(plain(text), places)
 
     def compared(self, sentences: Sequence[str], places: Sequence[int]) -> list[float]:
-        """Return the scores (`Near.score`) of the examples at some places, each for the sentence most similar to it."""
+        """Return the scores (`Near.score`) of the examples at `places`, each for the sentence most similar to it."""
         texts = {plain(sentence): sentence for sentence in sentences}
         if self._learnt is None:
             return [float(self._examples[place] in texts) for place in places]

@@ -170,7 +170,7 @@ def normalise(text: str, names: Collection[str] = ()) -> Normal:
 
 
 class _Shared:
-    """A normal form that one thread computes. Rules that ask for it meanwhile wait; other texts need not, as they share only caches."""
+    """A normal form that one thread computes. Other threads that ask for the same form wait for it."""
 
     def __init__(self, *given: Any) -> None:
         self._given = given
@@ -185,7 +185,7 @@ class _Shared:
 
 
 _shared = lru_cache(maxsize=REMEMBERED)(_Shared)
-_sharing = threading.Lock()  # for the look-up alone
+_sharing = threading.Lock()  # held only during the look-up, so threads with other texts need not wait
 
 
 def _normalised(text: str, names: tuple[tuple[str, str], ...], lexicon: Lexicon | None) -> Normal:

@@ -169,7 +169,7 @@ class OpenAIBackend:
                 yield text
         if event is None and not finished:
             raise PlatformError(
-                f"{self._owner}: the answer from {self._place} broke off before its end: look into the server's log"
+                f"{self._owner}: the answer from {self._place} broke off before its end: check the server's log"
             )
 
     def _parsed(self, payload: bytes) -> tuple[str, bool]:
@@ -219,7 +219,7 @@ class OpenAIBackend:
                     f"{self._place} sends no stream of events ({reason}). An OpenAI-compatible API usually ends in /v1"
                 )
             case _:
-                return f"the connection to {self._place} broke off ({reason}): look into the server's log"
+                return f"the connection to {self._place} broke off ({reason}): check the server's log"
 
     def _refused(self, answer: httpx2.Response, body: bytes) -> str:
         match answer.status_code:
@@ -234,9 +234,9 @@ class OpenAIBackend:
             case 429:
                 mend = "too many requests, or the quota is used up: wait, or check your account"
             case status if status >= 500:
-                mend = "look into its log, and whether the model fits into its memory"
+                mend = "check its log, and whether the model fits into its memory"
             case _ if moved := answer.headers.get("location"):
-                mend = f"it has moved: set {self._owner}.base_url to where {moved!r} is"
+                mend = f"it has moved to {moved!r}: change {self._owner}.base_url accordingly"
             case _:
                 mend = f"check {self._owner}.model ({self._model!r}) and the other settings"
         return f"the server at {self._place} answers {answer.status_code} ({self._reason(body) or 'no reason'}): {mend}"
@@ -266,7 +266,7 @@ def make_client(base_url: str, key: str, timeout: Any) -> httpx2.AsyncClient:
     return httpx2.AsyncClient(
         headers={"Authorization": f"Bearer {key}"} if key else {},
         timeout=timeout,
-        trust_env=not here,  # a proxy on another machine would take localhost for itself
+        trust_env=not here,  # a proxy on another machine would look for localhost on its own machine
         verify=not base_url.startswith("http:"),  # certificates take 30 ms to read, and http needs none
     )
 

@@ -37,7 +37,7 @@ class Rows:
         return len(self._packed)
 
     def some(self, places: Sequence[int]) -> Rows:
-        """Return the rows at some places."""
+        """Return the rows at `places`."""
         return Rows(self._packed[list(places)])
 
     def unpacked(self) -> NDArray[np.float32]:
@@ -67,7 +67,7 @@ def products(vectors: NDArray[np.float32], rows: NDArray[np.float32]) -> NDArray
     """Return the products of vectors of shape (k, d) and rows of shape (n, d), as an array of shape (k, n).
 
     This thread computes alone. The operator ``@`` shares the work with threads of numpy's library, which keep the cores
-    busy while they wait for each other. If other threads work, that takes 20 times as long.
+    busy while they wait for each other. When other threads work too, ``@`` takes 20 times as long.
     """
     import numpy as np
 

@@ -55,8 +55,8 @@ def _keys() -> tuple[NDArray[np.uint64], int]:
 def _rows() -> NDArray[np.int8]:
     """Return the vectors in the order of the keys: shape (n, d).
 
-    The package has them compressed, as columns. The first call unpacks them into the user's cache. They do not stay in
-    memory: the array is a map of that file.
+    The package holds the vectors compressed, as columns. The first call unpacks them into a file of the user's cache.
+    The array is a map of this file, so the vectors need no memory.
     """
     file = _file()
     about = file.stat()

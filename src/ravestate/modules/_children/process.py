@@ -28,7 +28,7 @@ LOADING = 120.0
 """A model may take this many seconds to load."""
 
 LINGER = 60.0
-"""If the last user of a process asks for it, the process stays loaded for this many seconds."""
+"""A process without users stays loaded for this many seconds, if its last user asked `drop` to let it linger."""
 
 SERVER = Path(__file__).with_name("serve.py")
 
@@ -119,7 +119,7 @@ class ModelProcess:
         with self._turn:
             if unwanted is not None and unwanted.is_set():
                 raise PlatformError(
-                    f"{self._backend.owner}: a request to {self._backend.name} was dropped, because another one replaces it"
+                    f"{self._backend.owner}: a request to {self._backend.name} was dropped: a newer one replaces it"
                 )
             self._start()
             answer, sound = self._exchange(header, data, seconds)
@@ -175,7 +175,7 @@ class ModelProcess:
             return answer, sound
         except TimeoutError:
             self._end()
-            raise PlatformError(f"{self._title} did not answer within {seconds:g} s, and starts again") from None
+            raise PlatformError(f"{self._title} did not answer within {seconds:g} s, and is restarted") from None
         except (EOFError, OSError):
             how = self._end(patience=ENDING)
             raise PlatformError(f"{self._backend.owner}: the process of {self._backend.name} ended ({how})") from None
@@ -224,7 +224,7 @@ def take(
 ) -> ModelProcess:
     """Return the process for a backend and a configuration, and count one more user. Pair each call with `drop`.
 
-    The process may not have started yet.
+    The process might not have started yet.
 
     Args:
         backend, config, python: As for `ModelProcess`.
@@ -250,7 +250,7 @@ def is_shared(process: ModelProcess) -> bool:
 
 
 def drop(process: ModelProcess, *, linger: bool = False) -> None:
-    """Count one user of `process` less. A process without users ends.
+    """Note that one user of `process` has left. A process without users ends.
 
     Args:
         process: The process.

@@ -39,8 +39,8 @@ def test_each_demonstration_is_kept_in_a_new_file(tmp_path: Path) -> None:
         ({"times": np.zeros(3)}, "points"),
         ({"times": np.zeros(3), "points": np.zeros((2, 33, 4))}, "3 times for 2 poses"),
         ({"times": np.zeros(2), "points": np.zeros((2, 17, 3))}, r"shape \(17, 3\): give \(33, 4\)"),
-        ({"times": np.array(["a"]), "points": np.zeros((1, 33, 4))}, "no file of landmarks"),
-        ({"times": np.array([{}], dtype=object), "points": np.zeros((1, 33, 4))}, "no file of landmarks"),
+        ({"times": np.array(["a"]), "points": np.zeros((1, 33, 4))}, "not a file of landmarks"),
+        ({"times": np.array([{}], dtype=object), "points": np.zeros((1, 33, 4))}, "not a file of landmarks"),
     ],
 )
 def test_files_with_wrong_arrays_are_refused_with_a_reason(

@@ -77,14 +77,14 @@ def test_each_picture_of_a_folder_is_shown_for_a_second(eye: Eye, tmp_path: Path
     for number, name in enumerate(("biden", "six")):
         (tmp_path / f"{number}.jpg").write_bytes(photo(name).read_bytes())
     (tmp_path / "2.jpg").write_bytes(b"broken")
-    (tmp_path / "notes.txt").write_text("no picture")
+    (tmp_path / "notes.txt").write_text("not a readable picture")
 
     async def watch() -> None:
         await eye.open(str(tmp_path))
         assert await see(eye, 0.0) == 1
         assert await see(eye, 0.9) is None
         assert (await see(eye, 1.0) or 0) >= 3
-        with pytest.raises(PlatformError, match=r"2\.jpg: .*no picture"):
+        with pytest.raises(PlatformError, match=r"2\.jpg: .*not a readable picture"):
             await see(eye, 2.0)
         assert await see(eye, 3.0) is None and eye.ended
 
@@ -112,7 +112,7 @@ def test_an_empty_folder_is_reported(eye: Eye, tmp_path: Path) -> None:
 
 def test_a_file_that_is_not_a_video_is_reported(eye: Eye, tmp_path: Path) -> None:
     (tmp_path / "bad.mp4").write_bytes(b"\0" * 5000)
-    with pytest.raises(PlatformError, match="no video that can be read"):
+    with pytest.raises(PlatformError, match="not a readable video"):
         run(eye.open(str(tmp_path / "bad.mp4")))
 
 

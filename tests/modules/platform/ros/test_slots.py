@@ -220,7 +220,7 @@ def test_in_a_simulation_the_test_writes_the_slots_and_no_node_connects() -> Non
         ({"type": "String"}, "write PACKAGE/NAME"),
         ({"keep": "newest"}, "keep='latest' or keep='all'"),
         ({"rate": 0}, "rate=0 must be a number"),
-        ({"qos": "sensor"}, "qos='sensor' is no profile"),
+        ({"qos": "sensor"}, "qos='sensor' is not a profile"),
         ({"qos": {"dept": 3}}, "did you mean 'depth'"),
         ({"qos": {"reliability": "good"}}, "'reliable' or 'best_effort'"),
     ],

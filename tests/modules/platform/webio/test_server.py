@@ -184,7 +184,7 @@ def test_a_server_on_all_addresses_shows_the_name_of_the_machine() -> None:
 
 
 def test_a_server_that_other_machines_can_reach_needs_a_token() -> None:
-    with pytest.raises(rs.PlatformError, match=r"others can reach host '0\.0\.0\.0', so a token is needed"):
+    with pytest.raises(rs.PlatformError, match=r"other machines can reach '0\.0\.0\.0', so a token is needed"):
         rs.run(parrot, webio, settings={"webio": {"host": "0.0.0.0", "port": 0}})
 
 

@@ -68,7 +68,7 @@ def test_acts_are_added_by_the_names_that_nlp_knows(tmp_path: Path) -> None:
     life = life_of("topics: {thanks: {acts: [thanks, praise], phrases: Any time.}, insult: {acts: anger}}", tmp_path)
     assert life.topics["thanks"].acts == ("thanks", "praise")
     assert life.topics["insult"].acts == ("insult", "anger")
-    with pytest.raises(rs.DeclarationError, match="'thank' is no act or feeling; did you mean 'thanks'"):
+    with pytest.raises(rs.DeclarationError, match="'thank' is not an act or a feeling; did you mean 'thanks'"):
         life_of("topics: {thanks: {acts: thank, phrases: Any time.}}", tmp_path)
 
 

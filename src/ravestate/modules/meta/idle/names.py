@@ -1,4 +1,4 @@
-"""The module idle: its settings, signals and slot."""
+"""The module idle: its settings, signals and slots."""
 
 from __future__ import annotations
 
@@ -30,7 +30,7 @@ class Settings(rs.Settings):
 module = rs.Module("idle", requires=[rawio], settings=Settings)
 
 bored = module.signal("bored")
-"""There was no activity for ``bored_after`` seconds. Each silence raises the signal once, also a silence after startup.
+"""There was no activity for ``bored_after`` seconds. Each silence raises this once, including the one after startup.
 
 A rule that speaks ends the silence. If the user ignores ``remarks`` remarks in a row, asks for quiet or says goodbye,
 the signal is not raised until the user speaks again. After words of sorrow, the signal is not raised for twelve
@@ -38,7 +38,7 @@ utterances.
 """
 
 hushed = module.signal("hushed")
-"""The user wants quiet, and says for example "stop" or "please be quiet"."""
+"""The user wants quiet: they have said, for example, "stop" or "please be quiet"."""
 
 impatient = module.signal("impatient")
 """A ready rule has waited for ``impatient_after`` seconds."""

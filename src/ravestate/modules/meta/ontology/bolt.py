@@ -24,7 +24,7 @@ META = "_ravestate"
 """The label of the node that stores the format version."""
 
 LIVELY = 5.0
-"""The idle seconds after which the driver tests a connection before use, since the server may have restarted."""
+"""The idle seconds after which the driver tests a connection before use, because the server may have restarted."""
 
 
 class BoltStore:
@@ -186,7 +186,7 @@ class BoltStore:
         """Close the connections to the server."""
         try:
             if self._driver is not None:
-                with contextlib.suppress(PlatformError):  # the server may not answer any more
+                with contextlib.suppress(PlatformError):  # the server might no longer answer
                     self._wait(self._driver.close())
         finally:
             self._loop.run_until_complete(self._loop.shutdown_asyncgens())

@@ -28,11 +28,11 @@ FILE_FORMAT = 2
 """The version of the format of nodes and relations in the file; a new format has a greater number.
 
 Format 1 had a table for each type and each relation, and pairs of types for each relation. Ladybug takes 3.5 MB of main
-memory for a table of nodes, and 10 MB for a table of relations that has been written. Format 2 has one table of each.
+memory for a table of nodes, and 10 MB for a table of relations that has been written. Format 2 has only two tables.
 """
 
 META = "_ravestate"
-"""The table of the format's version, and of the mark that deleted nodes have left bytes behind."""
+"""The table with the format's version, and with a mark if deleted nodes have left bytes behind."""
 
 NODE = "_node"
 """The table of all nodes. The id of a node begins with its type: ``City:...``."""
@@ -63,7 +63,7 @@ def connect(path: Path, *, whole_log: bool = True) -> tuple[Any, Any]:
         buffer_pool_size=BUFFER,
         max_db_size=LARGEST,
         max_num_threads=1,
-        auto_checkpoint=False,  # the store makes checkpoints later, since a checkpoint here could make the opening fail
+        auto_checkpoint=False,  # the store makes checkpoints later: a checkpoint here could make the opening fail
         throw_on_wal_replay_failure=whole_log,
     )
     connection = ladybug.Connection(database, num_threads=1)
@@ -77,7 +77,7 @@ def connect(path: Path, *, whole_log: bool = True) -> tuple[Any, Any]:
 
 
 def survives(path: Path, *, whole_log: bool = True) -> bool:
-    """Return whether a separate process can read the whole file without a crash. An exception counts as no crash."""
+    """Return whether a separate process can read the whole file without a crash. An exception is not a crash."""
     command = [sys.executable, "-P", __file__, str(path), "whole" if whole_log else "part"]
     try:
         return subprocess.run(command, capture_output=True, timeout=PATIENCE, check=False).returncode >= 0
@@ -106,7 +106,7 @@ def relation_table(columns: Mapping[str, str]) -> str:
 
 
 def aside(name: str, kind: str) -> str:
-    """Return the name of the column that keeps the values of hidden types, whose property has another kind.
+    """Return the name of a second column for a property `name`, when another kind of value occupies the first column.
 
     Ladybug does not tell capitals apart, so the column's name has the bytes of the property's name.
     """
@@ -163,7 +163,7 @@ def _columns(connection: Any, table: str) -> dict[str, str]:
 def _united(tables: Mapping[str, Mapping[str, str]]) -> dict[tuple[str, str], str]:
     """Return a column for each property of all tables: name and kind → name of the column.
 
-    In format 1, types that were not declared at the same time may have properties of the same name and other kinds.
+    In format 1, two types that were never declared together may have properties of the same name but different kinds.
     """
     united: dict[tuple[str, str], str] = {}
     taken: set[str] = set()

@@ -41,7 +41,7 @@ LOG_LIMIT = 4 * 2**20
 """The size of the write-ahead log, in bytes, at which the store moves the log's content into the database file."""
 
 MARK = "purge"
-"""The key of the mark that deleted nodes have left bytes in the file."""
+"""The key of a mark, which is in the file if deleted nodes have left bytes there."""
 
 log = logging.getLogger("ravestate.ontology")
 
@@ -261,7 +261,7 @@ class EmbeddedStore:
             self._has_bytes = True
 
     def purge(self) -> None:
-        """Rewrite the file without the deleted nodes, if there are any; in a transaction, after the commit.
+        """If nodes were deleted, rewrite the file without them. In a transaction, do this after the commit.
 
         If this fails, the deleted nodes are still forgotten. A warning says that the file still has their bytes. The
         next purge, deletion, closing or opening leads to another try.
@@ -284,7 +284,7 @@ class EmbeddedStore:
             log.warning("memory %s: %s: %s", self._path, what, kept)
 
     def rest(self) -> None:
-        """Purge the file, unless a purge has failed after the last deletion: each pause would lead to a warning."""
+        """Purge the file, unless a purge has failed since the last deletion: every pause would log another warning."""
         if not self._has_failed:
             self.purge()
 

@@ -75,7 +75,7 @@ class MemoryFiles:
         return self.path.exists() and (not self.path.is_file() or self.path.stat().st_size > 0)
 
     def make_private(self, *suffixes: str) -> None:
-        """Create missing side files that only the user can read. Everybody can read files that ladybug creates."""
+        """Create missing side files that only the user can read. Ladybug would let everybody read them."""
         for suffix in suffixes:
             with contextlib.suppress(OSError):  # ladybug will report the problem
                 os.close(os.open(self.beside(suffix), os.O_CREAT | os.O_RDWR, 0o600))

@@ -239,7 +239,7 @@ class Graph:
         )
 
     def _is_wanted(self, node: Node, going: Container[object]) -> bool:
-        """Return whether a node that stays, so that it is not in `going`, has a relation to `node`."""
+        """Return whether a node that is not in `going`, and so stays, has a relation to `node`."""
         return any(raw.values.get("id") not in going for _, raw in self._edges(node, back=True))
 
     def _must_declare(self, node: Node) -> None:
@@ -338,7 +338,7 @@ def _age(node: Node) -> tuple[str, str]:
 
 
 def _setting(variable: str, values: Mapping[str, Any]) -> str:
-    """Return the Cypher clause that sets properties. Its parameters have the prefix ``p_``, unlike those of ids."""
+    """Return the Cypher clause that sets properties. Its parameters begin with ``p_``; parameters for ids do not."""
     settings = ", ".join(f"{variable}.`{key}` = $p_{key}" for key in values)
     return f" SET {settings}" if settings else ""
 

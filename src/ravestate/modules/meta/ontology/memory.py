@@ -33,7 +33,7 @@ def _operation(method: Callable[Concatenate[Graph, P], T]) -> Callable[Concatena
 class Memory:
     """The open graph of an agent's knowledge.
 
-    Every operation returns a `Reply` at once. In an async rule, ``await`` the reply; in a plain function, call its
+    Every operation returns a `Reply` immediately. In an async rule, ``await`` the reply; in a plain function, call its
     method ``result()``. Operations run one at a time, in the order of the calls, in memory's thread. When the reply to
     a write has its result, the data is on the disk or on the server.
 
@@ -44,7 +44,7 @@ class Memory:
     """
 
     def __init__(self, worker: StoreWorker, read_types: Callable[[], Types]) -> None:
-        """Start to open memory. You may call operations at once; they wait until memory is open.
+        """Start to open memory. You may call operations immediately; they wait until memory is open.
 
         Args:
             worker: The thread of the store; `close` releases it.

@@ -31,7 +31,7 @@ def _next_id(type: str) -> str:
 class Node:
     """A thing that the agent knows: a type and properties. It is immutable; `with_properties` returns a changed copy.
 
-    A new node has its id at once, so a rule may save and relate it without waiting.
+    A new node has its id from the start, so a rule may save and relate it without waiting.
 
     Args:
         type: The name of the node's type: ``Person``.

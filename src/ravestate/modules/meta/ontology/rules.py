@@ -15,7 +15,7 @@ from .opening import open_memory
 async def open_up(ctx: rs.RuleContext) -> None:
     """Open memory at the place that the settings name.
 
-    The slot holds the memory object at once; operations wait until the memory is open.
+    The slot gets the memory object immediately; operations wait until the memory is open.
     """
     opening = open_memory(ctx.settings)
     ctx[memory] = opening

@@ -74,7 +74,7 @@ class Store(Protocol):
         ...
 
     def rest(self) -> None:
-        """Do the work that can wait until nobody waits for the store."""
+        """Do the postponed work, because nobody is waiting for the store."""
         ...
 
     def tidy(self) -> None:

@@ -55,7 +55,7 @@ def missing_tables(execute: Execute, types: Types, in_use: Iterable[Types], plac
         place: The database's path, for messages.
 
     Raises:
-        PlatformError: The database has a property of another kind.
+        PlatformError: A property in the database has another kind than in `types`.
     """
     tables = _tables(execute)
     if META not in tables:
@@ -94,7 +94,7 @@ def _owners(all_types: Iterable[Types]) -> tuple[dict[str, Mapping[str, Kind]], 
 
 
 def _owned(owners: Mapping[str, Mapping[str, Kind]]) -> dict[str, tuple[Kind, list[str]]]:
-    """Return the kind and the owners of each property: the declaration gives a name only one kind."""
+    """Return the kind and the owners of each property. `Types` gives a name the same kind for all owners."""
     owned: dict[str, tuple[Kind, list[str]]] = {}
     for owner, properties in owners.items():
         for name, kind in properties.items():
@@ -111,7 +111,7 @@ def _missing_columns(
 ) -> Iterator[str]:
     """Yield the statements for the columns of one table.
 
-    A column that has values of hidden types alone gets another name if a declared property needs its name.
+    If a declared property needs the name of a column that has only values of hidden types, that column gets a new name.
     """
     columns = {str(row[0]): str(row[1]) for row in execute(f"CALL table_info('{table}') RETURN name, type")}
     by_letters = {name.lower(): name for name in columns}

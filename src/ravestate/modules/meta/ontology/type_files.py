@@ -58,7 +58,7 @@ def types_in(paths: Iterable[Path]) -> Types:
     return _read(tuple((path.expanduser(), _state_of(path.expanduser())) for path in paths))
 
 
-@lru_cache(maxsize=8)  # cached, since each visitor to a page opens memory
+@lru_cache(maxsize=8)  # cached, because each visitor to a page opens memory
 def _read(own: tuple[tuple[Path, object], ...]) -> Types:
     built_in = files("ravestate.modules.meta.ontology") / "types.yaml"
     return read_types([built_in, *(path for path, _ in own)])
@@ -168,7 +168,7 @@ class _Reader:
         for other in (*among, *others):
             if other.lower() == name.lower() and (other != name or other in others):
                 place = self._places[other]
-                problem = "are too much alike: a type and a relation, or names that differ by capitals alone"
+                problem = "are too similar: names of types and relations must differ by more than capital letters"
                 raise fault(file, node, f"{name} and {other} ({place}) {problem}")
         self._places.setdefault(name, line_of(file, node))
 

@@ -14,10 +14,10 @@ from .store import Store
 T = TypeVar("T")
 
 PAUSE = 0.5
-"""The seconds without a job after which the store does the work that can wait."""
+"""After this many seconds without a job, the store does its postponed work."""
 
 LONGEST = 10.0
-"""The maximum number of seconds that this work waits if the jobs follow each other without a pause."""
+"""Postponed work waits at most this many seconds if the jobs follow each other without a pause."""
 
 _shared: dict[str, StoreWorker] = {}
 _closing: dict[str, Future[None]] = {}
@@ -26,7 +26,7 @@ _lock = threading.Lock()
 
 
 class StoreWorker:
-    """A thread that runs jobs on a store, one at a time. In a pause, the store does the work that can wait.
+    """A thread that runs jobs on a store, one at a time. In a pause, the store does its postponed work.
 
     A process opens a file once for all contexts: a second opening would succeed and ruin the file. The thread is a
     daemon, so a server that hangs cannot keep the process alive.

@@ -14,7 +14,7 @@ if TYPE_CHECKING:
 LEFT_WRIST, RIGHT_WRIST = 3, 4
 TRACKS = 12
 """The number of coordinates whose pairwise correlations are features. These are the wrists, the height and depth of the
-knees, the depth of the torso, and the rise."""
+knees, the depth of the torso, and the height of the shoulders."""
 
 
 def features_of(skeleton: Skeleton) -> NDArray[np.float64]:

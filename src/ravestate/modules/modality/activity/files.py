@@ -1,7 +1,7 @@
 """Read and write movements: files with the landmarks of a body over time, and the folder of taught activities.
 
 A file of landmarks is a numpy archive (``.npz``) with ``times`` (T,) in seconds and ``points`` (T, 33, 4), see `Pose`.
-The optional ``name`` is that of the activity. The folder of taught activities has one such file for each demonstration,
+The optional ``name`` is the activity's name. The folder of taught activities has one such file for each demonstration,
 and no pictures.
 """
 
@@ -44,7 +44,8 @@ def read(file: Path) -> tuple[str, tuple[Pose, ...]]:
         raise PlatformError(f"activity: {file} cannot be read: {error.strerror or error}") from None
     except (KeyError, ValueError, EOFError, AttributeError, TypeError, zipfile.BadZipFile) as error:
         raise PlatformError(
-            f"activity: {file} is no file of landmarks ({error}): it must be an .npz file with times (T,) and points (T, 33, 4)"
+            f"activity: {file} is not a file of landmarks ({error}): "
+            "it must be an .npz file with times (T,) and points (T, 33, 4)"
         ) from None
     if times.ndim != 1 or len(times) != len(points):
         raise PlatformError(f"activity: {file} has {times.size} times for {len(points)} poses: give one for each")

@@ -18,7 +18,7 @@ from .recogniser import Recogniser
 
 @dataclass(frozen=True, slots=True)
 class Activity:
-    """An activity that somebody performed in front of the camera."""
+    """An activity that a person performed in front of the camera."""
 
     name: str
     """The spoken name, for example ``waving`` or ``playing the guitar``."""
@@ -61,7 +61,7 @@ label: rs.Signal[str] = module.signal("label", payload=str, input=True)
 """An external recogniser has named an activity. The name may have the form ``playing_guitar``."""
 
 recognised: rs.Signal[Activity] = module.signal("recognised", payload=Activity, input=True)
-"""Somebody is performing an activity that the agent knows. Until they stop, the signal is raised every `step` seconds.
+"""A person is performing an activity that the agent knows. Until they stop, the signal is raised every `step` seconds.
 An unknown movement does not raise it."""
 
 taught: rs.Signal[Lesson] = module.signal("taught", payload=Lesson, input=True)

@@ -27,7 +27,7 @@ if TYPE_CHECKING:
     from numpy.typing import NDArray
 
 OWN = 0.9
-"""The weight of an activity's own variance in its deviations. The variance of an average activity has the rest."""
+"""The weight of an activity's own variance in its deviations. An average activity's variance has the remainder."""
 RIDGE = 0.05
 """This variance is added to every feature, and all correlations shrink by this share."""
 SPREAD = 0.8
@@ -41,7 +41,7 @@ REMEMBERED = 64
 RUNNERS_UP = 3
 """The maximum number of next most likely names."""
 FAR = 3.0
-"""A next most likely activity may be this many times as far away as the limit. Farther activities look too
+"""An activity farther away than this many times the limit is not among the next most likely ones: it looks too
 different."""
 
 

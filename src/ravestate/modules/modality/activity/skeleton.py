@@ -1,4 +1,4 @@
-"""Normalise a movement: a skeleton of unit size that faces the viewer, at a fixed frame rate, whatever the camera."""
+"""Normalise a movement: for any camera, a skeleton of unit size that faces the viewer, at a fixed frame rate."""
 
 from __future__ import annotations
 
@@ -30,7 +30,7 @@ JOINTS = (0, 13, 14, 15, 16, 25, 26, 27, 28)
 """The landmarks of the joints that move: head, elbows, wrists, knees, ankles; the left joint of a pair first."""
 ARMS = 5
 """The number of joints of the head and the arms, which come first in `JOINTS`. Their places are relative to the
-shoulders, those of the legs to the hips."""
+shoulders. The places of the legs are relative to the hips."""
 WIDTH = 0.72
 """The usual distance between the shoulders, in torso lengths. It replaces the torso as the scale if no hips are
 visible."""
@@ -109,7 +109,7 @@ def skeleton_of(poses: Sequence[Pose]) -> Skeleton | None:
 def _resampled(
     times: NDArray[np.float64], points: NDArray[np.float64]
 ) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
-    """Return the places of the landmarks (T, 33, 3) at `RATE`, and in which share of the frames each is visible (33,).
+    """Return the places of the landmarks (T, 33, 3) at `RATE`, and the share of frames in which each is visible (33,).
 
     While a landmark is invisible, its place is interpolated linearly.
     """

@@ -14,7 +14,7 @@ def windows(poses: Sequence[Pose], length: float, step: float) -> Iterator[tuple
     Args:
         poses: The poses, in the order of their times.
         length: The length of a window, in seconds.
-        step: The seconds from the beginning of one window to that of the next.
+        step: The seconds from the beginning of one window to the beginning of the next.
     """
     if not poses:
         return

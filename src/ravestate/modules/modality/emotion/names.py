@@ -52,4 +52,4 @@ felt: rs.Slot[Feeling | None] = module.slot("felt", None, always=True, keep="lat
 """The agent's last feeling; None before the first one."""
 
 sorrow: rs.Slot[int] = module.slot("sorrow", 0)
-"""For how many further utterances the user's last words of sorrow still count."""
+"""The number of further utterances for which the user's last words of sorrow still count."""

@@ -38,7 +38,7 @@ class Line(Protocol):
         ...
 
     def stop(self) -> None:
-        """Drop all queued sound, and silence the loudspeaker at once."""
+        """Drop all queued sound, and silence the loudspeaker immediately."""
         ...
 
     @property

@@ -21,7 +21,7 @@ class Listener(Protocol):
         ...
 
     def fall_silent(self) -> None:
-        """End a growing utterance, although no rule has written it as a whole."""
+        """End a growing utterance that no rule will write as a whole."""
         ...
 
 
@@ -63,6 +63,6 @@ def carry(module: rs.Module, slot: rs.Slot[Any]) -> None:
 
     @module.rule(when=speaking.false.max_age(None).detached(), reads=slot, background=True)
     async def end_piece(ctx: rs.RuleContext) -> None:
-        """End a growing utterance, although no rule has written it as a whole."""
+        """End a growing utterance that no rule has written as a whole."""
         if listener := ctx[slot]:
             listener.fall_silent()

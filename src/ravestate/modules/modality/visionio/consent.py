@@ -47,7 +47,7 @@ async def ask_leave(ctx: rs.RuleContext) -> rs.Resign | None:
     if visitor is None or memory is None:
         return rs.Resign("there is nobody to ask, or no memory")
     if _open(ctx) is not None:
-        return rs.Resign("the agent has asked somebody else")
+        return rs.Resign("the agent has asked another person")
     ctx[visitors].add(visitor.key, replace(visitor, faces=True))
     try:
         present = await memory.together(lambda graph: people.has_faces(graph, visitor.node))

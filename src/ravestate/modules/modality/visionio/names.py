@@ -30,7 +30,7 @@ class Settings(rs.Settings):
     loop: bool = False
     """Whether a video file or a folder begins again at its end."""
     python: Path | None = None
-    """The Python interpreter with the packages of the eyes, by default that of ``make eyes`` or this interpreter."""
+    """The Python interpreter of the vision worker; by default the interpreter of ``make eyes``, or the current one."""
     fps: Annotated[float, Field(gt=0, le=60)] = 10.0
     """The agent looks at no more than this many pictures per second."""
     load: Annotated[float, Field(gt=0, le=1)] = 0.6

@@ -134,7 +134,7 @@ def forget_faces(graph: Graph, person: Node) -> int:
 
 
 def take_away(graph: Graph, person: Node, vectors: Sequence[Vector]) -> int:
-    """Remove those of a person's faces that surely belong to somebody else. Return how many there were.
+    """Remove from a person the stored faces that surely belong to another person. Return how many there were.
 
     Args:
         graph: The memory.

@@ -9,12 +9,12 @@ from pathlib import Path
 from ravestate.errors import PlatformError
 from ravestate.folders import user_folder
 
-MEND = "`make eyes` sets them up, or pip install 'ravestate[eyes]', or name the Python that has them in visionio.python"
+MEND = "run `make eyes`, or pip install 'ravestate[eyes]', or set visionio.python to a Python that has the packages"
 NEEDED = ("dlib", "cv2", "face_recognition_models")
 
 
 def eyes_python(given: Path | None = None) -> str:
-    """Return the interpreter for the vision worker: `given`, the one of ``make eyes``, or this one.
+    """Return the interpreter for the vision worker: `given`, the interpreter of ``make eyes``, or the current one.
 
     Raises:
         PlatformError: No interpreter has the packages; the message says how to get them.

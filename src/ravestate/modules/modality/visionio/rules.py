@@ -53,7 +53,7 @@ async def watch(ctx: rs.RuleContext) -> rs.Resign | None:
     if frames is None and _is_served(ctx):
         return rs.Resign("the user's platform has no camera in visionio.camera now")
     if frames is not None and ctx.payload(camera.changed) is None:
-        return rs.Resign("the new camera has a run of its own")
+        return rs.Resign("another run of this rule watches the new camera")
     view = Watch(settings, frames, ctx.log)
     tracks = Tracks(settings.sure)
     want = ["faces", "pose"] if _is_heard(ctx, pose) or _is_heard(ctx, activity.recognised) else ["faces"]
@@ -211,7 +211,7 @@ async def track(ctx: rs.RuleContext) -> None:
 
 
 def _reconsidered(ctx: rs.RuleContext, visitor: Visitor, face: FaceVec, decision: Decision) -> Visitor | None:
-    """Return the visitor of a track in the light of new vectors. None if the track now belongs to somebody else."""
+    """Return the visitor of a track in the light of new vectors. None if the track now belongs to another person."""
     settings: Settings = ctx.settings
     person = decision.person
     if person is None or person.id == visitor.node.id or person.id in visitor.mistaken:
@@ -220,7 +220,7 @@ def _reconsidered(ctx: rs.RuleContext, visitor: Visitor, face: FaceVec, decision
         return _recognised(ctx, visitor, person)
     else:
         alike = False
-    # Even if memory knows this face under another name, it may be the visitor's.
+    # Even if memory knows this face under another name, it may be the visitor's face.
     if alike or any(visitor.resembles(vector, settings.threshold) for vector in decision.vectors):
         return visitor
     ctx[visitors].add(visitor.key, replace(visitor, tracks=visitor.tracks - {face.track}))
@@ -248,7 +248,7 @@ async def _arrival(ctx: rs.RuleContext, decision: Decision) -> Visitor:
             known = person is not None
             return Visitor(key, node, known, since=now, seen=now, linked=True, faces=known, moving=True)
         if person is not None and before is None and item not in (None, name):
-            key = None  # the platform says that its user is somebody else
+            key = None  # the platform says that its user is another person
     node = person or ontology.Node("Person")
     if key is None:
         key = f"{KEY}{1 + max((int(k[len(KEY) :]) for k in (*users, *all_visitors) if k.startswith(KEY)), default=0)}"
@@ -350,7 +350,7 @@ async def learn_name(ctx: rs.RuleContext) -> rs.Resign | None:
     wrong = None
     if visitor.faces and visitor.known:
         strangers = [other for other in all_visitors.values() if not other.known]
-        if len(strangers) == 1:  # the name must be that of the only person whom the agent does not know
+        if len(strangers) == 1:  # the name must belong to the only person whom the agent does not know
             visitor = strangers[0]
         else:
             wrong, visitor = visitor, replace(visitor, mistaken=visitor.mistaken | {visitor.node.id})

@@ -32,7 +32,7 @@ class Visitor:
         vectors: Their best vectors of this visit, each with its quality, best first.
         linked: Whether they are a user whom a platform has added.
         faces: Whether memory has their face, or the agent has asked them. If not, the agent may ask.
-        mistaken: The ids of people in memory whom they have turned out not to be.
+        mistaken: The ids of people in memory with whom the agent has confused them.
         moving: Whether they are taking the place of a platform's user. The agent removes that user for a moment.
     """
 
@@ -143,9 +143,9 @@ def decide(history: Sequence[FaceVec], face: FaceVec, *, sure: int, quality: flo
 
 
 def whose(visitors: Mapping[str, Visitor], face: FaceVec, decision: Decision, threshold: float) -> Visitor | None:
-    """Return the visitor to whom a new track belongs; None if somebody new has come.
+    """Return the visitor to whom a new track belongs; None if a new person has come.
 
-    A face that was lost for a moment gets a new track. Memory or the vectors show that it is the same visitor's.
+    A face that was lost for a moment gets a new track. Memory or the vectors show to which visitor it belongs.
     """
     for visitor in visitors.values():
         if decision.person is not None and visitor.node.id == decision.person.id:

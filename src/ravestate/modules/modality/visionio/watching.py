@@ -17,7 +17,7 @@ from .places import default_camera
 AGAIN = 5.0
 """The seconds between two attempts to open a lost camera."""
 MADE_UP = 0.5
-"""Later looks catch up on a delay of at most this many seconds. They do not catch up on the rest of a longer delay."""
+"""Later looks make up for a delay of at most this many seconds. The rest of a longer delay is lost."""
 FAULTS = 5
 """After this many failures in a row, the agent gives up, unless the camera is a device."""
 

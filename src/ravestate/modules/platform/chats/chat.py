@@ -41,7 +41,7 @@ TURN = 1.0
 answer."""
 
 FAREWELL = 10.0
-"""The maximum time for a greeting, for a farewell, or for earlier answers (seconds)."""
+"""The maximum number of seconds to wait for a greeting, a farewell, or earlier answers."""
 
 
 class Chat:
@@ -64,7 +64,7 @@ class Chat:
         self._hearing: Entry | None = None  # the message that the agent is about to hear
         self._open: list[Entry] = []  # messages that the agent has heard, and may still answer
         self._said: list[Answer] = []  # answers that are not in the store yet
-        self._repeated: Counter[str] = Counter()  # answers that the store has kept since before a crash
+        self._repeated: Counter[str] = Counter()  # answers from before a crash, which the store has kept
         self._draft = Draft(id)
         self._state: Literal["open", "leaving", "gone"] = "open"
         self._mute = False  # whether the agent's words are dropped
@@ -207,7 +207,7 @@ class Chat:
         if people.present(context, name, person):
             return False
         new = not self._room.store.knows(self.id, person)
-        # Do not greet a person again. Muting the greeting would also mute answers to others, so wait for those first.
+        # Do not greet a person again. Muting the greeting would also mute answers to others, so first wait for these.
         self._mute = not new and await self._answered(FAREWELL)
         await people.welcome(context, name, person, self._room.log)
         with contextlib.suppress(TimeoutError):

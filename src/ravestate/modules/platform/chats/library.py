@@ -9,7 +9,7 @@ from ravestate.errors import PlatformError
 
 
 async def library(platform: str, package: str, extra: str) -> None:
-    """Import the package that a platform needs, in a thread, because the import takes long.
+    """Import the package that a platform needs, in a thread, because the import is slow.
 
     Raises:
         PlatformError: The package is missing; the message says how to get it.

@@ -48,8 +48,8 @@ class Incoming:
 
 
 Sent = Literal["text", "picture", "voice", "edit", "reaction"]
-"""The kinds of outgoing messages. A carrier gets a ``voice`` message with its sound, or as ``text`` if there is
-none."""
+"""The kinds of outgoing messages. A carrier gets a ``voice`` message with its sound, or as ``text`` if there is no
+sound."""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)

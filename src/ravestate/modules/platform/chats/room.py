@@ -101,13 +101,13 @@ class Room:
         Args:
             events: The events.
             read: A function that returns the message in an event; None if the event does not concern the agent. If it
-                raises an exception, the room ignores the event, because anybody may send an event of any shape.
+                raises an exception, the room ignores the event, because anybody can send an event of any shape.
         """
         found: list[Incoming] = []
         for event in events:
             try:
                 message = read(event)
-            except Exception:  # anybody may send an event of any shape
+            except Exception:  # anybody can send an event of any shape
                 self.log.exception("an event cannot be read, and is ignored")
                 continue
             if message is not None and (message.kind == "left" or self.admits(message)):

@@ -12,7 +12,7 @@ HIDDEN = "[secret]"
 
 
 class Censor:
-    """Replaces secret texts in the records of all loggers, including tracebacks, as long as there are secrets."""
+    """Replaces secret texts in the records of all loggers, including tracebacks, while there are secrets."""
 
     def __init__(self) -> None:
         self._secrets: Counter[str] = Counter()

@@ -19,7 +19,7 @@ SHOWN = 2.0
 """A message waits at most this many seconds for the end of a request that shows its draft."""
 
 BURST = 0.15
-"""After a pause, the turns of this many seconds may come at once. At 25 turns per second, the first second has 28."""
+"""After a pause, the turns of up to this many seconds need no wait. At 25 turns per second, the first second has 28."""
 
 
 class Pace:
@@ -30,7 +30,7 @@ class Pace:
         self._next = 0.0
 
     async def turn(self) -> None:
-        """Wait for a turn. After a pause, a few turns may come at once."""
+        """Wait for a turn. After a pause, the first few turns need no wait."""
         now = asyncio.get_running_loop().time()
         self._next = max(self._next + self._gap, now - BURST)
         if self._next > now:

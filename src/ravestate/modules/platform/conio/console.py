@@ -38,7 +38,7 @@ class Screen(Protocol):
         """Print a text of whole lines. Raise OSError if the output is gone."""
 
     def stream(self, piece: str) -> None:
-        """Print a piece of a line: at once on a terminal, but elsewhere only when the line is complete."""
+        """Print a piece of a line: immediately on a terminal, but elsewhere only when the line is complete."""
 
     def end(self) -> None:
         """End the line of pieces that `stream` has begun, if there is one."""
@@ -96,7 +96,7 @@ class Console:
 
     @property
     def interactive(self) -> bool:
-        """Whether a person types the lines. If not, all lines and the end of input may arrive at once."""
+        """Whether a person types the lines. If not, all lines and the end of input may arrive at the same time."""
         return self._screen.interactive
 
     async def __aenter__(self) -> Console:
@@ -138,7 +138,7 @@ class Console:
             self._safely(lambda: self._screen.show(text))
 
     def grow(self, piece: str) -> None:
-        """Print `piece` after the earlier pieces of its text. If the output is no terminal, print only whole lines."""
+        """Print `piece` after the earlier pieces of its text. Without a terminal, print only whole lines."""
         piece = without_controls(piece)
         if piece:
             self._streamed += piece

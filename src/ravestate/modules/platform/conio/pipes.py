@@ -66,7 +66,7 @@ class Pipes:
         self._write(text + "\n")
 
     def stream(self, piece: str) -> None:
-        """Print a piece of a line: at once on a terminal, but elsewhere only when the line is complete."""
+        """Print a piece of a line: immediately on a terminal, but elsewhere only when the line is complete."""
         self._unwritten += piece
         if self._watched:
             ready, self._unwritten = self._unwritten, ""

@@ -64,7 +64,7 @@ async def serve(ctx: rs.RuleContext) -> None:
                 if line.strip():
                     ctx[rawio.input] = line
                 if not console.interactive:
-                    await ctx.quiet()  # wait for the answer to this line: through a pipe, all lines may arrive at once
+                    await ctx.quiet()  # wait for this line's answer: through a pipe, all lines may arrive together
             if console.ending == "end of input":
                 await ctx.quiet()  # a user who ends the input still gets the last answer
             else:

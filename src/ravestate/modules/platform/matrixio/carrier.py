@@ -18,7 +18,7 @@ from ravestate.modules.platform.chats import DeliveryError, Outgoing, is_emoji
 GONE = ("M_FORBIDDEN", "M_NOT_FOUND")
 FINAL = ("M_TOO_LARGE", "M_BAD_JSON", "M_INVALID_PARAM", "M_UNRECOGNIZED")
 LOST = (aiohttp.ClientError, TimeoutError, asyncio.TimeoutError, OSError)
-"""The failures of the connection. In most cases, the request may have reached the server nevertheless."""
+"""The failures of the connection. After most of them, the request may still have reached the server."""
 
 FILE = 60.0  # the maximum number of seconds to transfer a file
 JPEG = b"\xff\xd8"  # the first bytes of a JPEG file

@@ -55,7 +55,7 @@ class Connection:
         self._angles: dict[str, float] = {}
         """The present angles of the axes with speed commands."""
         self._targets: dict[str, float] = {}
-        """The angles at which the turning axes shall stop."""
+        """The angles at which the turning axes must stop."""
         self._ports: dict[str, Channel] = {}
         self._opened = asyncio.Event()
 
@@ -88,7 +88,7 @@ class Connection:
             self.node.subscribe(port.topic, port.type, take, latest=False, qos=QUALITY)
 
     async def say(self, text: str) -> None:
-        """Let the robot speak a text. Return when it has spoken, or at once if it does not report this.
+        """Let the robot speak a text. Return when it has spoken; if it does not report this, return immediately.
 
         Raises:
             PlatformError: The robot does not answer.

@@ -93,14 +93,14 @@ class Faces(Port):
     """The expressions of the face."""
 
     faces: dict[str, str]
-    """The robot's names of the expressions, by Ravestate's names."""
+    """Ravestate's name of an expression → the robot's name."""
 
 
 class Gestures(Port):
     """The gestures of the robot."""
 
     gestures: dict[str, str]
-    """The robot's names of the gestures, by Ravestate's names."""
+    """Ravestate's name of a gesture → the robot's name."""
 
 
 @dataclass(frozen=True, slots=True)

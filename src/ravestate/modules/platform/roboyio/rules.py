@@ -22,7 +22,7 @@ THOUGHTFUL = Pose(yaw=0.25, pitch=0.2)
 _connected: WeakSet[Node] = WeakSet()
 """The nodes that have a robot. The slot `body` does not suffice: two runs of `connect` may begin at the same time."""
 THINKS_AFTER = 0.6
-"""A robot shows that it thinks after it has worked for this many seconds."""
+"""After this many seconds of work, a robot shows that it is thinking."""
 
 
 @module.rule(
@@ -51,7 +51,7 @@ async def connect(ctx: rs.RuleContext) -> rs.Resign | None:
         assert node is not None  # `_not_now` has checked this
         made = Connection(robot, node, ctx.sleep, lambda: ctx.now, settings.speech_timeout)
         _connected.add(node)
-        ctx[body] = made  # at once, so that the first words wait for this connection
+        ctx[body] = made  # before the connection is open, so that the first words wait for it
         await made.open()
 
         def hear(message: Any) -> None:
@@ -178,7 +178,7 @@ async def turn_to_sound(ctx: rs.RuleContext) -> rs.Resign | None:
     background=True,
 )
 async def think(ctx: rs.RuleContext) -> rs.Resign | None:
-    """Look up and away while an answer takes long. Look back when the answer comes."""
+    """Look up and away when an answer is slow. Look back when the answer comes."""
     if ctx[speaking]:
         return rs.Resign("the robot speaks")
     ctx[gaze] = THOUGHTFUL

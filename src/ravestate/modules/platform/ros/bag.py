@@ -31,7 +31,7 @@ def play(sim: Simulated, bag: str | Path, *, types: Types | None = None) -> int:
     Time is virtual, so a bag of one hour takes seconds, and leads to the same decisions each time.
 
     Args:
-        sim: The simulation. The beginning of the bag is the simulation's present time.
+        sim: The simulation. The bag begins at the simulation's current time.
         bag: A ``.bag`` file of ROS 1, or a folder or file of ROS 2.
         types: The types of the bag's messages, if the bag does not contain their definitions.
 

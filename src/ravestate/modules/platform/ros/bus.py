@@ -244,7 +244,9 @@ class BusLink:
         """Connect as soon as the bus runs."""
         host, _, port = self._address.rpartition(":")
         if not port.isdecimal():
-            self.failed = PlatformError(f"bus={self._address!r} is no address: write HOST:PORT, such as 127.0.0.1:7411")
+            self.failed = PlatformError(
+                f"bus={self._address!r} is not an address: write HOST:PORT, such as 127.0.0.1:7411"
+            )
             return
         self._task = asyncio.ensure_future(self._connect(host or "127.0.0.1", int(port)))
 
@@ -293,7 +295,7 @@ class BusLink:
             self._frames.close()
 
     def kill(self) -> None:
-        """Close the connection at once."""
+        """Close the connection immediately."""
         if self._task is not None:
             self._task.cancel()
         if self._frames is not None:

@@ -15,7 +15,7 @@ from .slots import Binding
 
 KINDS = {"subscriber": "msg", "publisher": "msg", "service": "srv", "action": "action"}
 OTHERS = {"subscriber": "publishers", "publisher": "subscribers", "service": "servers", "action": "servers"}
-"""For each kind of slot, the graph's name for the other end that the slot needs."""
+"""Kind of slot → the other end that the slot needs, by its name in the graph."""
 PLACES = {"subscriber": "topics", "publisher": "topics", "service": "services", "action": "actions"}
 
 LOOKS = 8
@@ -79,7 +79,7 @@ def look_at(slot: Bound, node: Node, graph: Mapping[str, list[dict[str, Any]]]) 
     if not count or row is None:
         alike = [row for row in graph[PLACES[binding.kind]] if _has(row, binding.type, KINDS[binding.kind])]
         known = [row["name"] for row in alike if row["name"] != name]
-        hint = f"; of this type there is {', '.join(sorted(known)[:3])}: write remap or another name" if known else ""
+        hint = f"; this type is used by {', '.join(sorted(known)[:3])}: write remap or another name" if known else ""
         return Line(False, slot.name, f"{bound}: no {OTHERS[binding.kind]}{hint or ': start the other node'}")
     if row["types"] and not _has(row, binding.type, KINDS[binding.kind]):
         return Line(

@@ -12,7 +12,7 @@ from .outbox import Outbox
 
 LENGTH = struct.Struct("<I")
 BLOCK = 1 << 12
-"""The number of bytes to read at once, unless a message lacks more. A larger buffer takes longer to allocate."""
+"""The bytes to read in one call, unless the rest of a message is longer. A larger buffer takes longer to allocate."""
 TURN = 1 << 20
 """After reading this many bytes, give the loop a turn."""
 MESSAGES = 1000
@@ -49,7 +49,7 @@ class _Connection(abc.ABC):
             self._sock.close()
 
     def _receive(self, size: int) -> bytes | None:
-        """Return at most `size` bytes: none of them if the connection has ended. Return None if no data have come."""
+        """Return at most `size` bytes: ``b""`` if the connection has ended, and None if no data have come."""
         try:
             return self._sock.recv(size)
         except (BlockingIOError, InterruptedError):

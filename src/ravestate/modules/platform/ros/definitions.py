@@ -10,7 +10,7 @@ from ravestate.errors import PlatformError
 ENDINGS = {"msg": ".msg", "srv": ".srv", "action": ".action"}
 
 PARTS = {"srv": ("Request", "Response"), "action": ("Goal", "Result", "Feedback")}
-"""The messages of which each kind of definition consists, in the order of the file."""
+"""Kind of definition → the messages in such a file, in order."""
 
 COMMON = {
     "std_srvs/srv/Empty": "---",

@@ -60,7 +60,7 @@ def quality(qos: str | Mapping[str, Any] | None, *, depth: int, latch: bool) -> 
     if isinstance(qos, str):
         if qos not in PROFILES:
             raise DeclarationError(
-                f"qos={qos!r} is no profile{nearest(qos, PROFILES)}: write {', '.join(map(repr, PROFILES))}"
+                f"qos={qos!r} is not a profile{nearest(qos, PROFILES)}: write {', '.join(map(repr, PROFILES))}"
             )
         whole = {**PROFILES[qos]}
     else:

@@ -259,7 +259,7 @@ class Node:
         self.send(Kind.CALL, channel.number, call.number, body)
         timeout = channel.binding["timeout"]
         try:
-            if acts:  # no time limit: the bridge watches for a server, and a goal may take any time
+            if acts:  # no time limit: the bridge watches for a server, and a goal may take arbitrarily long
                 return await call.future
             async with asyncio.timeout(timeout):
                 return await call.future

@@ -1,4 +1,4 @@
-"""A queue of bytes for a socket. They leave at once, or as soon as the other end reads."""
+"""A queue of bytes for a socket. The bytes leave immediately, or as soon as the other end reads."""
 
 from __future__ import annotations
 

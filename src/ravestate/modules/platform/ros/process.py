@@ -16,7 +16,7 @@ from .frames import Frames, Handle, Kind
 from .places import Place
 
 BACK_OFF = (0.1, 0.3, 1.0, 3.0)
-"""The waits before a new process replaces a dead one (seconds). They grow as long as the processes do no work."""
+"""The waits before a new process replaces a dead one (seconds). They grow until a process does some work."""
 
 ENDING = 3.0
 """A process may take this many seconds to end cleanly."""
@@ -45,7 +45,7 @@ class BridgeProcess:
         self.restarts = 0
         """The number of processes that replaced a dead process."""
         self.failed: PlatformError | None = None
-        """Why no process can run; None if one can."""
+        """The reason why no process can run; None if a process can run."""
         self._place = place
         self._config = config
         self._handle = handle

@@ -103,7 +103,7 @@ def connect(
         """Open the topics, services and actions of all slots. With `use_sim_time`, follow the simulation's clock."""
         if getattr(asyncio.get_running_loop(), "is_virtual", False):
             return rs.Resign("time is virtual: a test writes the slots, or plays a bag")
-        made = ctx[node] = make_node(ctx.settings, ctx.stop)  # at once, so that other rules for startup find the node
+        made = ctx[node] = make_node(ctx.settings, ctx.stop)  # early, so that other rules for startup find the node
         try:
             await made.prepare()
             bind_all(ctx, made, version)

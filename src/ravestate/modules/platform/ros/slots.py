@@ -148,7 +148,7 @@ class Declarations:
         if keep not in ("latest", "all"):
             raise DeclarationError(f"subscriber {name}: keep={keep!r}: write keep='latest' or keep='all'")
         if rate is not None and not (isinstance(rate, (int, float)) and rate > 0):  # pyright: ignore[reportUnnecessaryIsInstance]
-            raise DeclarationError(f"subscriber {name}: rate={rate!r} must be a number of messages a second above 0")
+            raise DeclarationError(f"subscriber {name}: rate={rate!r} must be a number of messages per second above 0")
         options = {
             "latest": keep == "latest", "rate": rate,
             "qos": quality(qos, depth=DEEP if keep == "all" else 10, latch=latch),

@@ -27,10 +27,10 @@ if TYPE_CHECKING:
 
 POLL = 30  # if there are no updates, the server holds a request for them for this many seconds
 MOST = 100  # the maximum number of updates in an answer
-PATIENCE = 10  # after the server should have answered, the bot waits this many more seconds
+PATIENCE = 10  # the bot waits this many seconds longer for an answer than `POLL`
 ANSWER = 20.0  # the maximum number of seconds to wait for the answer to any other request
 CONFLICTS = 4  # after this many conflicts in a row, the bot gives up, because another program polls the same bot
-SETTLED = 60.0  # after it has run this many seconds, the bot never gives up: a program that came later should instead
+SETTLED = 60.0  # a bot that has run this many seconds never gives up: the program that came later should
 CONFLICT_WAIT = 2.0  # the first wait after a conflict (seconds); after a crash, the server still holds the old request
 SECRET = "x-telegram-bot-api-secret-token"
 

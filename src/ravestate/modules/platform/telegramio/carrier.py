@@ -44,7 +44,7 @@ class TelegramCarrier:
         self._drafts = drafts
         self.rate = rate
         self.current = asyncio.Event()
-        """Set as soon as the bot has the messages that came before its start."""
+        """An event that is set as soon as the bot has the messages that came before its start."""
         # The known message ids. Key: a chat that numbers its messages itself, or "" for the bot's common numbering.
         self._ids: defaultdict[str, deque[int]] = defaultdict(lambda: deque(maxlen=KNOWN))
 

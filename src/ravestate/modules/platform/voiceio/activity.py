@@ -49,7 +49,7 @@ class Activity:
 
 
 def speech_spans(pcm: bytes, above: float = 0.5, gap: float = 0.5) -> list[tuple[float, float]]:
-    """Return the begin and the end (seconds) of each span of speech in a sound (16 kHz).
+    """Return the beginning and the end (seconds) of each span of speech in a sound (16 kHz).
 
     A chunk is speech if its probability is at least `above`. A pause shorter than `gap` seconds does not end a span.
     """
@@ -80,7 +80,7 @@ def session(file: Path) -> Any:
     """Return an ONNX model that runs in one thread."""
     onnxruntime: Any = import_module("onnxruntime")  # the package has no types
     options = onnxruntime.SessionOptions()
-    # Otherwise, integer products overflow on processors without VNNI, and each machine computes other probabilities.
+    # Otherwise, integer products overflow on processors without VNNI, so probabilities would differ between machines.
     options.add_session_config_entry("session.x64quantprecision", "1")
     options.inter_op_num_threads = options.intra_op_num_threads = 1
     options.log_severity_level = 3

@@ -81,7 +81,7 @@ class Ear:
     """The ear of one line. It gets blocks of sound and yields events, for example onsets and pauses.
 
     Args:
-        speech: A chunk counts as speech from this probability on.
+        speech: The minimum probability of speech for a chunk to count as speech.
         pause: This many seconds of silence are a pause.
         canceller: The canceller that removes the echo; None for a line without echo.
     """

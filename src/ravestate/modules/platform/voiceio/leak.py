@@ -41,9 +41,10 @@ DOUBTFUL = 12
 QUIET = 0.25
 """A frame in which the microphone is silent counts only this much, because an echo may be late."""
 OFTEN, SELDOM = 2, 8
-"""Compare the sounds once in this many frames: before and after the first decision. A comparison takes milliseconds."""
+"""A comparison takes milliseconds, so the sounds are compared once in this many frames, before and after the first
+decision."""
 GONE = 250
-"""The same as `DOUBTFUL`, but for a line that has had an echo (5 s). Somebody may have spoken louder than the echo."""
+"""The same as `DOUBTFUL`, but for a line that has had an echo (5 s). A person may have spoken louder than the echo."""
 
 
 class Leak:
@@ -61,7 +62,7 @@ class Leak:
         self._far_sound: NDArray[np.float32] = np.zeros(FAR, np.float32)
         self._strength: float | None = None  # the measured strength of the echo before cleaning
         self._unlike = 0.0  # how many frames (weighted) came since the last echo
-        self._limit = DOUBTFUL  # after so many such frames, the line counts as free of echo
+        self._limit = DOUBTFUL  # after this many such frames, the line counts as free of echo
         self._frame = 0  # how many frames had sound on both sides
         self._alike = 0  # how many comparisons in a row have found an echo
         self.echoes = False

@@ -26,8 +26,7 @@ def likeness(near: NDArray[np.float32], far: NDArray[np.float32]) -> tuple[float
     """Return the highest peak of the whitened correlation (GCC-PHAT), in standard deviations, and its delay in samples.
 
     An echo repeats the loudspeaker's sound at one delay, so all frequencies agree on this delay. The peak is then
-    usually above 30, at any level. For another voice, the peak is about 10. It may be up to 20 as long as few samples
-    are known.
+    usually above 30, at any level. For another voice, the peak is about 10; with few samples, it can reach 20.
 
     Args:
         near: The last `NEAR` samples of the microphone.
@@ -48,7 +47,7 @@ def likeness(near: NDArray[np.float32], far: NDArray[np.float32]) -> tuple[float
 
 
 def strength(near: NDArray[np.float32], far: NDArray[np.float32], delay: int) -> float:
-    """Return the share of the loudspeaker's power that the microphone hears, even if somebody is speaking.
+    """Return the share of the loudspeaker's power that the microphone hears, even while a person is speaking.
 
     The share is the part of the power that depends on the loudspeaker's sound in each band (Welch's coherence). The
     power of another voice is divided by the number of windows. With 14 windows, it counts 11 dB less.

@@ -95,7 +95,7 @@ def piper_voice(name: str) -> Path | None:
 def piper_python(setting: Path | None) -> str | None:
     """Return a Python interpreter that has Piper; None if there is none.
 
-    It is the one in the setting, this interpreter, or the one of the environment that ``make voice`` creates.
+    The candidates are the interpreter in the setting, this interpreter, and the one that ``make voice`` installs.
     """
     if setting is not None:
         return str(setting.expanduser())

@@ -159,7 +159,7 @@ class Mouth:
         self._end += len(spoken.sound) / SECOND
 
     def hold(self, now: float) -> None:
-        """Silence the loudspeaker at once, at the time `now`, and keep the rest of the speech."""
+        """Silence the loudspeaker immediately, at the time `now`, and keep the rest of the speech."""
         if self._held_at is None:
             self._held_at = self.line.played
             self.silent_since = now

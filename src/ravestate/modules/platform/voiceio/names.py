@@ -33,7 +33,7 @@ class Settings(rs.Settings):
     sink: str = "default"
     """The loudspeaker: ``default``, a device's name, or a WAV file; empty to drop the sound."""
     half_duplex: bool = False
-    """Whether the agent is deaf while it speaks. This helps if the loudspeaker is loud, but nobody can interrupt."""
+    """Whether the agent is deaf while it speaks. This helps with a loud loudspeaker, but prevents interruptions."""
     echo_cancellation: bool = True
     """Whether the agent's own voice is removed from the microphone's sound (libspeexdsp)."""
 
@@ -54,10 +54,10 @@ class Settings(rs.Settings):
     voice: str = ""
     """``espeak``, ``espeak:en-gb``, ``piper``, or a Piper voice's name or file; by default Piper if it is set up."""
     piper: Path | None = None
-    """The Python interpreter of Piper's environment, by default that of ``make voice``."""
+    """The Python interpreter of Piper's environment; by default the one that ``make voice`` installs."""
 
     speech: Share = 0.5
-    """A sound counts as speech from this probability on."""
+    """The minimum probability of speech for a sound to count as speech."""
     pause: Annotated[float, Field(ge=0.1)] = 0.2
     """This many seconds of silence are a pause, and end a turn whose words and melody are complete."""
     doubtful_pause: Seconds = 1.2
@@ -65,7 +65,7 @@ class Settings(rs.Settings):
     longest_pause: Seconds = 1.4
     """This many seconds of silence end every turn."""
     complete: Share = 0.5
-    """The melody counts as complete from this probability on (smart-turn)."""
+    """The minimum probability for a melody to count as complete (smart-turn)."""
 
     ask_back_below: Share = 0.38
     """The agent asks back if the recogniser's confidence is below this."""
@@ -101,7 +101,7 @@ back_channel = module.signal("back_channel", payload=str)
 """The user has only shown that they listen ("mhm", "yes", laughter) while the agent was speaking."""
 
 false_alarm = module.signal("false_alarm", payload=str)
-"""The sound was no turn of a user, but noise, a cough or the agent's own voice. The payload is the reason."""
+"""The sound was not a user's turn, but noise, a cough or the agent's own voice. The payload is the reason."""
 
 barge_in = module.signal("barge_in")
 """The user interrupts: the agent stops speaking."""

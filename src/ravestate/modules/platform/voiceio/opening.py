@@ -23,7 +23,7 @@ from .turn import Melody, is_back_channel, is_demand, is_echo, melody_of, wanted
 from .wav_line import WavLine
 
 SURE = 0.55
-"""A short sound interrupts the agent only from this confidence on. Recognisers may hear "Amen" in an "mm"."""
+"""The minimum confidence for a short sound to interrupt the agent. Recognisers may hear "Amen" in an "mm"."""
 
 
 @dataclass(slots=True)
@@ -104,7 +104,7 @@ async def open_conversation(given: Line | None, settings: Settings, warn: Callab
     Args:
         given: A platform's line; None to open the files or devices that the settings name.
         settings: The module's settings.
-        warn: For each missing part that is not essential, this function gets a sentence about it.
+        warn: A function to call with a sentence about each missing part that is not essential.
 
     Raises:
         PlatformError: A model, a program or a device is missing. The message says how to get it.

@@ -28,7 +28,7 @@ class PlayOut:
         self._parts: list[_Part] = []
 
     def play(self, sound: bytes, now: float) -> None:
-        """Queue sound at `OUT_RATE`. The sound begins at once, or after the sound in the queue."""
+        """Queue sound at `OUT_RATE`. The sound begins immediately, or after the sound in the queue."""
         if sound:
             self._parts.append(_Part(max(now, self.end), sound))
 

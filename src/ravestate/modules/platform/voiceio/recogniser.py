@@ -126,7 +126,7 @@ class Recogniser:
         return replace(found, last=answer.get("last", {})) if found.text else found
 
     def close(self, *, linger: bool = False) -> None:
-        """Release the model. If nobody else uses it, its process ends: at once, or with `linger` after a while."""
+        """Release the model. If it has no other user, its process ends immediately, or with `linger` after a while."""
         model_process.drop(self._process, linger=linger)
 
 

@@ -54,7 +54,7 @@ async def listen(ctx: rs.RuleContext) -> rs.Resign | None:
     if line is None and _is_served(ctx):
         return rs.Resign("the user's platform has no line in rawio.sound now")
     if line is not None and ctx.payload(rawio.sound.changed) is None:
-        return rs.Resign("the new line has a run of its own")
+        return rs.Resign("another run of this rule listens to the new line")
 
     def warn(text: str) -> None:
         ctx.log.warning("%s", text)
@@ -364,7 +364,7 @@ async def resume(ctx: rs.RuleContext) -> rs.Resign | None:
     background=True,
 )
 async def fill_pause(ctx: rs.RuleContext) -> rs.Resign | None:
-    """Say a filler when the answer takes long."""
+    """Say a filler when the answer is slow."""
     settings: Settings = ctx.settings
     if not settings.filler_after or not settings.fillers or (talk := ctx[conversation]) is None:
         return rs.Resign("fillers are off, or the line is closed")

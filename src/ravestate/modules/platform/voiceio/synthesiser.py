@@ -92,7 +92,7 @@ class Synthesiser:
         return Spoken(text, sound, reference, _words(text, answer, seconds(sound, OUT_RATE)))
 
     def close(self, *, linger: bool = False) -> None:
-        """Release the voice. If nobody else uses it, its process ends: at once, or with `linger` after a while."""
+        """Release the voice. If it has no other user, its process ends immediately, or with `linger` after a while."""
         model_process.drop(self._process, linger=linger)
 
 

@@ -99,7 +99,7 @@ def wanted_silence(
 
 
 def completeness(text: str, language: str = "en") -> Literal["open", "doubtful", "complete"]:
-    """Judge by the last word whether a text is complete. With an article, it is open; with an auxiliary verb, doubtful.
+    """Judge by the last word whether a text is complete: open after an article, doubtful after an auxiliary verb.
 
     Example:
         >>> completeness("I would like to go to the"), completeness("I think that"), completeness("Go home.")

@@ -15,7 +15,7 @@ from .names import ORIGIN
 if TYPE_CHECKING:
     from .names import Settings
 
-PAUSE = 1.0  # the server waits this many seconds before it refuses a wrong token, so that guessing takes long
+PAUSE = 1.0  # the server waits this many seconds before it refuses a wrong token, so that guessing is slow
 
 
 def is_local(host: str) -> bool:
@@ -80,7 +80,7 @@ class Access:
         return _is_own(origin, host) or origin in self.origins
 
     def admits(self, token: str | None) -> bool:
-        """Return whether a token is right, or no token is needed. The time of the check reveals nothing about it."""
+        """Return whether a token is right, or no token is needed. The check takes the same time for any token."""
         return self._token is None or hmac.compare_digest(
             (token or "").encode("utf-8", "replace"), self._token.encode("utf-8", "replace")
         )
@@ -94,7 +94,7 @@ class Access:
 
 
 def _is_own(origin: str, host: str) -> bool:
-    """Return whether an origin is that of the requested host itself."""
+    """Return whether an origin belongs to the requested host itself."""
     return origin.partition("://")[2] == host
 
 

@@ -61,17 +61,17 @@ class Channel:
         return text
 
     async def send(self, text: str) -> None:
-        """Send a frame to the client at once."""
+        """Send a frame to the client now, without the queue."""
         await self._socket.send_text(text)
 
     async def send_sound(self, sound: bytes | memoryview) -> None:
-        """Send a binary frame to the client at once."""
+        """Send a binary frame to the client now, without the queue."""
         await self._socket.send_bytes(bytes(sound))
 
     def reply(self, text: str) -> None:
         """Queue a frame. The writing task later calls `send_replies`, which sends it."""
         if len(self._replies) >= self._most:
-            raise WebSocketDisconnect(1008, "it does not read")
+            raise WebSocketDisconnect(1008, "the client does not read")
         self._replies.append(text)
         self.woken.set()
 
@@ -86,7 +86,7 @@ class Channel:
 
 
 class Bucket:
-    """A rate limit (token bucket): at most `burst` events at once, then `rate` events per second. Times are in seconds.
+    """A rate limit (token bucket): a burst of `burst` events, then `rate` events per second. Times are in seconds.
 
     Example:
         >>> bucket = Bucket(burst=2, rate=0.5, now=0.0)

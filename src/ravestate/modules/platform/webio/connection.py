@@ -64,12 +64,12 @@ class Connection:
         self._note = note
         self._privacy = privacy
         self._channel = Channel(socket, REPLIES)
-        self._stream: object = None  # the line and the stream of the client's last `Flush`
-        self._listens: object = None  # the line of the client's last `Listening`
+        self._stream: object = None  # the line and the stream of the last `Flush` to the client
+        self._listens: object = None  # the line of the last `Listening` to the client
         self._taken: str | None = None  # why this window has lost the line, if the client does not know it yet
         self._announced: int | None = None  # the number of the picture in the next binary frame, from its `Picture`
-        self._look: object = None  # the camera and the number of the client's last `Look`
-        self._faces: tuple[frames.Face, ...] = ()  # the client's last `Faces`
+        self._look: object = None  # the camera and the number of the last `Look` to the client
+        self._faces: tuple[frames.Face, ...] = ()  # the faces of the last `Faces` to the client
         self._unseen: str | None = None  # why this window has lost the camera, if the client does not know it yet
 
     async def run(self) -> None:

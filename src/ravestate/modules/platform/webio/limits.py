@@ -51,7 +51,7 @@ class LimitedHTTP(H11Protocol):
         self._most = most
         self._received = 0  # how many bytes came since the last check
         self._waited: object = None  # the request for which the last check waited
-        self._late: tuple[object, float] = (None, 0.0)  # a request, and how many bytes it lacks at the lowest rate
+        self._late: tuple[object, float] = (None, 0.0)  # a request, and by how many bytes it is behind the lowest rate
 
     def connection_made(self, transport: asyncio.Transport) -> None:  # type: ignore[override]  # as in the base class
         """Accept a new connection, or refuse it if there are too many."""
@@ -95,7 +95,7 @@ class LimitedHTTP(H11Protocol):
         self.loop.call_later(TIMEOUT, self._check)
 
     def _is_late(self, request: RequestResponseCycle) -> bool:
-        """Return whether the client sends a request too slowly on average. Waits for the server do not count."""
+        """Return whether the client sends a request too slowly on average, apart from its waits for the server."""
         due = LOWEST_RATE * TIMEOUT
         behind = self._late[1] if self._late[0] is request else 0.0
         waits = self.flow.read_paused or not request.more_body
@@ -170,7 +170,7 @@ class LimitedWebSocket(WebSocketsSansIOProtocol):
 
 
 def _hang_up(transport: asyncio.Transport) -> None:
-    """Close a connection at once; the system drops the unread data instead of trying to deliver it."""
+    """Close a connection immediately; the system drops the unread data instead of trying to deliver it."""
     connected = transport.get_extra_info("socket")
     if connected is not None:
         with contextlib.suppress(OSError):

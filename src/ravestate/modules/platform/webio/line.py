@@ -38,7 +38,7 @@ STALL = 5.0
 """A browser window loses the line if it plays none of its sound for this many seconds."""
 
 DEAF = 30.0
-"""A browser window loses the line if no rule listens to it within this many seconds. Models may take long to load."""
+"""A browser window loses the line if no rule listens to it within this many seconds. Models may load slowly."""
 
 
 class Window(Protocol):
@@ -70,7 +70,7 @@ class PageLine:
 
     The agent's sound consists of streams. A new stream begins when sound is dropped, and when a window gets the line.
     The window reports how much of the present stream it has played. While no window has the line, sound counts as
-    played at once, because the visitor reads the words.
+    played immediately, because the visitor reads the words.
 
     Args:
         on_left: The line calls this function when the window that has the line leaves it.

@@ -28,7 +28,7 @@ class Settings(rs.Settings):
     """The settings of webio: where the server listens, who may connect, and the limits."""
 
     host: str = "127.0.0.1"
-    """The address to listen on. Any address that others can reach needs a token."""
+    """The address to listen on. Any address that other machines can reach needs a token."""
     port: int = pydantic.Field(8420, ge=0, le=65535)
     """The port to listen on; 0 takes any free port."""
     token: pydantic.SecretStr | None = None

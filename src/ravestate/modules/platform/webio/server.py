@@ -75,8 +75,9 @@ class Server:
         self._settings: Settings = agent.settings["webio"]  # type: ignore[assignment]  # the module's own
         if self._settings.token is None and not is_local(self._settings.host):
             raise PlatformError(
-                f"webio: others can reach host {self._settings.host!r}, so a token is needed: set RAVESTATE_WEBIO_TOKEN, "
-                "e.g. to what this prints: python -c 'import secrets; print(secrets.token_urlsafe())'"
+                f"webio: other machines can reach {self._settings.host!r}, so a token is needed: set "
+                "RAVESTATE_WEBIO_TOKEN, for example to the output of "
+                "python -c 'import secrets; print(secrets.token_urlsafe())'"
             )
         self._socket: socket.socket | None = None
         self._uvicorn: _Uvicorn | None = None
@@ -204,7 +205,7 @@ def _listen(host: str, port: int) -> socket.socket:
         listener.close()
         if error.errno == errno.EADDRINUSE:
             raise PlatformError(
-                f"webio: port {port} is in use: choose another one, or any that is free: --set webio.port=0"
+                f"webio: port {port} is in use: choose another one, or take any free port with --set webio.port=0"
             ) from None
         raise PlatformError(f"webio: cannot listen on {host}, port {port}: {error.strerror}") from None
     return listener

@@ -324,7 +324,7 @@ class Session:
 
     @property
     def typing(self) -> bool:
-        """Whether the agent is working on an answer of which the page shows nothing yet."""
+        """Whether the agent is working on an answer, and the page shows no part of it yet."""
         return self._working and not self.partial and self.ended is None
 
     @property

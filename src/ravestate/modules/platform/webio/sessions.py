@@ -21,7 +21,7 @@ class Sessions:
     """All conversations with one agent. The agent makes a context for each of them.
 
     A conversation without a browser window is kept for `keep` seconds. If there are `limit` conversations already, a
-    new one ends a conversation without a window. If all of them have windows, the new one is refused.
+    new conversation ends one that has no window. If all of them have windows, the new conversation is refused.
     """
 
     def __init__(self, agent: Agent, *, limit: int, keep: float) -> None:
@@ -101,7 +101,7 @@ class Sessions:
         self._timers[session] = asyncio.get_running_loop().call_later(self._keep, self.leave, session, Ending.ABANDONED)
 
     async def _make_room(self) -> None:
-        """End the conversation that has been without a window longest. Prefer visitors who never spoke."""
+        """End the conversation that has had no window for the longest time. Prefer visitors who never spoke."""
         abandoned = min(self._timers, key=lambda session: session.spoken, default=None)
         if abandoned is not None:
             task = self._tasks[abandoned]

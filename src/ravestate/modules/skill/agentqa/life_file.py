@@ -159,7 +159,7 @@ class _Reader:
                 problem = f"{text!r} is not a regular expression ({error}): write for example i am (so )?sad"
                 raise self._fault(node, problem) from None
         elif part == "acts" and text not in (known := [*bundled("acts").classes, *bundled("feelings").classes]):
-            raise self._fault(node, f"{text!r} is no act or feeling{nearest(text, known)}: {', '.join(known)}")
+            raise self._fault(node, f"{text!r} is not an act or a feeling{nearest(text, known)}: {', '.join(known)}")
         return text
 
     def _entries(

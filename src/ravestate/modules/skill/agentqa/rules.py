@@ -100,7 +100,7 @@ async def understand(ctx: rs.RuleContext) -> rs.Resign | None:
         return rs.Resign(found.reason)
     leave = "permit" in seen.asks and seen.question is not QuestionWord.OBJECT  # "what can I call you" asks for a name
     if (leave or "choose" in seen.asks) and " or " not in found.example:
-        return rs.Resign("the user names options to choose from, or asks for leave")
+        return rs.Resign("the user names options to choose from, or asks for permission")
     own = _YOU.isdisjoint(found.question.split()) and not _OWN.isdisjoint(seen.asks)
     if own and found.score < STRAY:
         return rs.Resign(f"the user asks about their own life, not about the agent: {', '.join(seen.asks)}")
@@ -194,7 +194,7 @@ async def offer(ctx: rs.RuleContext) -> rs.Resign | None:
     """After a long silence, invite the user to ask about the agent. Do so only once."""
     count, last = ctx[turns]
     if ctx[prompted] is not None or count < TURNS:
-        return rs.Resign("the agent has offered it before, or the talk has just begun")
+        return rs.Resign("the agent has offered it before, or the conversation has just begun")
     if ctx.now - last < ctx.settings.prompt_after or ctx[idle.unanswered]:
         return rs.Resign("the user has spoken, or owes an answer")
     ctx[prompted] = ctx.now

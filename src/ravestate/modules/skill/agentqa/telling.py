@@ -119,7 +119,7 @@ _PARTICULAR = re.compile(
 _FAVOURITE = re.compile(
     r"\bfavou?rite (?!things?\b|of\b)\w+|\b(?:what|which)(?: (?:kind|sort)s? of)? \w+ do you (?:like|love|prefer|hate)\b"
 )
-"""A question for the favourite of one kind: *what is your favourite bird*, *which bird do you like best*."""
+"""A question about the agent's favourite of one kind: *what is your favourite bird*, *which bird do you like best*."""
 _LIKED = re.compile(r"\b(?:like|love|enjoy|hate|fond of|into|mind) (.+)$")
 """The thing in *do you like rain*."""
 _FILLING = frozenset(

@@ -98,9 +98,9 @@ class Outcome:
     counts: bool = False
     """Whether the countdown begins."""
     lesson: str = ""
-    """The name of the movement that the recogniser shall learn."""
+    """The name of the movement that the recogniser must learn."""
     performs: str = ""
-    """The activity that the agent's body shall perform."""
+    """The activity that the agent's body must perform."""
 
 
 @dataclass(frozen=True, slots=True)

@@ -38,13 +38,13 @@ game: rs.Slot[Game] = module.slot("game", Game(), type=Game)
 """The state of the game, with the score."""
 
 sightings: rs.Slot[tuple[tuple[bool, activity.Activity], ...]] = module.slot("sightings", ())
-"""The activities recognised in this round. A flag is true if the agent was watching, and false if it was counting."""
+"""The activities recognised in this round, each with a flag: true while watching, false during the countdown."""
 
 gestures: rs.Slot[frozenset[str]] = module.slot("gestures", frozenset(), type=frozenset, input=True)
 """The activities that the agent's body can perform. A platform with a body writes this slot."""
 
 perform: rs.Signal[str] = module.signal("perform", payload=str)
-"""The agent's body shall perform an activity for the user to guess. The payload is a name in `gestures`."""
+"""The agent's body must perform an activity for the user to guess. The payload is a name in `gestures`."""
 
 moved: rs.Signal[Move] = module.signal("moved", payload=Move)
 """The user's words are a move in the game."""

@@ -47,9 +47,9 @@ FEELINGS: dict[Feeling, rs.Signal[None]] = {
 PRIORITY = 40.0
 """The weight of the answers in a game, which outrank all other answers, such as agentqa's answer to "stop"."""
 JUST = 0.1
-"""Seconds for which the end of the agent's speech counts as the end of its last word."""
+"""The end of the agent's speech counts as the end of its last word if it is at most this many seconds ago."""
 SPEAKING = 6.0
-"""The longest time (seconds) for which the agent waits until its last word has sounded."""
+"""The longest time (seconds) that the agent waits for its last word to sound."""
 
 
 def is_on(now: Game) -> bool:
@@ -270,7 +270,7 @@ async def see(ctx: rs.RuleContext) -> rs.Resign | None:
     detached=True,
 )
 async def guess(ctx: rs.RuleContext) -> rs.Resign | None:
-    """Voice the first guess."""
+    """Say the first guess."""
     if ctx[game].step != "watching":
         return rs.Resign("the game has been stopped")
     seen = ctx[sightings]

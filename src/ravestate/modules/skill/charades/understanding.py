@@ -23,7 +23,7 @@ SHORT = 3
 OF_ACT = (("repeat", "repeat"), ("play", "play"), ("play", "wanted"), ("bored", "play"))
 """Pairs of an act in ``acts.yaml`` and its move. The first pair whose move is possible in this step counts."""
 ANY_GAME = word_set("game round")
-"""Nouns after *play* that name no game."""
+"""Nouns after *play* that do not name a game."""
 SURE = 2
 """The strength of a sure yes or no; *I think so* is weaker."""
 SURE_NAME = 0.65
@@ -69,7 +69,7 @@ def understand(seen: Analysis, moves: Set[str], known: Iterable[str] = ()) -> Mo
 
 
 def _answer(seen: Analysis, *, weak: bool) -> str:
-    """Return ``yes``, ``no`` or ``unclear``; empty if the utterance is no answer.
+    """Return ``yes``, ``no`` or ``unclear``; empty if the utterance is not an answer.
 
     Args:
         seen: The analysis of the utterance.
@@ -145,14 +145,14 @@ def _own_words(seen: Analysis) -> str:
 
 @cache
 def examples() -> Matcher:
-    """Return the classifier of the user's words during the game. It may not be loaded yet."""
+    """Return the classifier of the user's words during the game. It might not be loaded yet."""
     found = read_examples(files(__name__.rpartition(".")[0]) / "examples.yaml")
     return Matcher(found.classes, found.none)
 
 
 @cache
 def names() -> Matcher:
-    """Return the classifier of the names of activities. It may not be loaded yet."""
+    """Return the classifier of the names of activities. It might not be loaded yet."""
     found = {riddle.name: [f.format(w) for w in riddle.words for f in FRAMES] for riddle in RIDDLES.values()}
     return Matcher(found, NO_NAMES, least=SURE_NAME)
 

@@ -1,4 +1,4 @@
-"""The module, its settings and its slot."""
+"""The module, its settings, slots and signals."""
 
 from __future__ import annotations
 

@@ -11,7 +11,7 @@ from .names import filled, late, lost, module, promised, waiting
 ENOUGH = 5.0
 """The minimum number of seconds between two fillers."""
 REMEMBERED = 120.0
-"""If an answer comes more than this many seconds after the user's words, it counts as an answer to the newest words."""
+"""An answer that comes more than this many seconds after its question counts as an answer to the newest words."""
 
 
 @module.rule(
@@ -24,7 +24,7 @@ REMEMBERED = 120.0
     background=True,
 )
 async def notice_no_answer(ctx: rs.RuleContext) -> None:
-    """Raise `impatient` when a rule runs long without output. (`idle` does so when rules wait.)"""
+    """Raise `impatient` when a rule has run for a while without output. (`idle` raises it when rules wait.)"""
     await ctx.sleep(ctx.settings.unanswered_after)
     last = ctx[filled]
     if last is not None and ctx.now - last < ENOUGH:
@@ -44,7 +44,7 @@ def _silent(speaking: bool) -> bool:
 async def fill_the_pause(ctx: rs.RuleContext) -> rs.Resign | None:
     """Say a filler if the user waits for an answer, and the agent has not said a filler lately."""
     if not ctx[waiting]:
-        return rs.Resign("the user waits for no answer")
+        return rs.Resign("the user is not waiting for an answer")
     last = ctx[filled]
     if last is not None and ctx.now - last < ENOUGH:
         return rs.Resign(f"a pause was filled {ctx.now - last:.1f} s ago")

@@ -24,10 +24,10 @@ from .stems import Stems
 RETRIEVED = 16
 """The maximum number of passages in each of two searches: for any word of the question, and for all its words."""
 READ = (1, 1, 2, 4, 8, 8)
-"""The sizes of the batches in which these passages are read. A good answer ends the reading after its batch."""
+"""The sizes of the batches in which passages are read until one is good enough. Only a follow-up uses the last two."""
 GOOD, VERY_GOOD, HOPELESS = 7.5, 9.0, -4.0
-"""Best scores that end the reading: `VERY_GOOD` after the first passage, `GOOD` after later passages, and `HOPELESS` or
-less after the first few passages."""
+"""Best scores that end the reading: `VERY_GOOD` after the first passage, and `GOOD` after later passages. `HOPELESS` or
+less ends it after three passages, except for a follow-up."""
 ENOUGH = 0.4
 """The minimum share (0 to 1) of the question's words in a passage. Passages with fewer words are not read."""
 SHORT = 24
@@ -43,7 +43,7 @@ NAMES, KINDS = 0.4, 0.7
 WORDS = 24
 """The maximum number of words to search for."""
 NOT_STATED = "no document states all of it"
-"""The reason for no answer if no passage meets the qualifiers of a question."""
+"""The reason why there is no answer if no passage meets the qualifiers of a question."""
 
 
 @dataclass(frozen=True, slots=True)

@@ -57,7 +57,7 @@ def answer_in(
     reason = ""
     for reading in tried[:MOST]:
         new = tuple(map(variants_of, as_question(reading.new).words)) if reading.new else ()
-        if not answerer.states(new):  # the search in full would end with the same result, after some parsing
+        if not answerer.states(new):  # the full search would find nothing either, but take longer
             reason = reason or NOT_STATED
             continue
         seen = heard if reading.text == heard.text else replace(parse(reading.text), kind=heard.kind)
@@ -100,7 +100,7 @@ def _about(answerer: Answerer, question: Question, reading: Reading, latest: str
 
 
 def _reckoned(heard: Parse, thread: Sequence[Turn], settings: Settings) -> Answer | None:
-    """Return the result of a sum; None if the utterance is no sum."""
+    """Return the result of a sum; None if the utterance is not a sum."""
     told, now = [focused(turn.question, turn.answer) for turn in thread], datetime.now().astimezone()
     text = heard.text
     try:
@@ -123,7 +123,7 @@ def _warn(error: str) -> None:
 
 
 def _again(text: str, before: str) -> str:
-    """Return the previous sum with the text's number or date (*and of 200?*); empty if the text has no number or date."""
+    """Return the sum `before` with the number or date of `text` (*and of 200?*); empty if `text` has none."""
     dates, old = dates_in(text), dates_in(before)
     if dates and old:
         return before.lower().replace(old[-1].shown, dates[-1].shown)

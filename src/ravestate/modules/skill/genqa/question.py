@@ -53,11 +53,11 @@ class Question:
     """Words that a passage must not have: other ranks, the other sex."""
     kind: QuestionWord | None = None
     doubtful: bool = False
-    """Whether only a sure answer counts, because the utterance may not be a question about the world."""
+    """Whether only a sure answer counts, because the utterance might not be a question about the world."""
     follows: bool = False
     """Whether the question was completed from earlier questions. If so, names do not count for the confidence."""
     declined: str = ""
-    """The reason why documents cannot answer the question; empty if they may."""
+    """The reason why documents cannot answer the question; empty if they can."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -176,7 +176,7 @@ def _means(word: Word) -> bool:
 
 
 def _declined(heard: Parse, said: Sequence[Word]) -> str:
-    """Return the reason why documents cannot answer the question; empty if they may."""
+    """Return the reason why documents cannot answer the question; empty if they can."""
     root = next((word for word in said if word.dep == "ROOT" or word.head == word.index), None)
     modal = next((word for word in said if word.tag == "MD" and word.dep in ("aux", "ROOT")), None)
     if any(word.low in THE_TWO and not _is_anybody(heard, word) for word in said):
@@ -243,7 +243,7 @@ def _qualifiers(heard: Parse) -> tuple[list[tuple[str, ...]], list[str]]:
 
 
 def _is_superlative(tree: Tree, word: Word) -> bool:
-    """Return whether a word is a superlative. The *most* in *most people* is no superlative."""
+    """Return whether a word is a superlative. The *most* in *most people* is not a superlative."""
     before = tree.before(word)
     quantity = (
         word.low in ("most", "least") and tree.head(word).pos == "NOUN" and (before is None or before.low != "the")

@@ -92,7 +92,7 @@ def words_for(name: str) -> frozenset[str]:
 def reckon(
     text: str, told: Sequence[str], today: date, rates: Mapping[str, float] | None = None, now: time | None = None
 ) -> str:
-    """Return a sentence with the result of a sum; empty if the text is no sum.
+    """Return a sentence with the result of a sum; empty if the text is not a sum.
 
     Args:
         text: The utterance.

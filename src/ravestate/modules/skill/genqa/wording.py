@@ -65,7 +65,7 @@ def wording_rule(settings: Settings) -> rs.Rule[Any, Any]:
                     break
         utterance.finish()
         if not is_supported(utterance.text, passages, answer.question):
-            return rs.Resign(f"the model said {utterance.text!r}, which the documents do not")
+            return rs.Resign(f"the model said {utterance.text!r}, but the documents do not support it")
         ctx[verbaliser.intent] = intent_of(answer, utterance.text, settings)
         return None
 

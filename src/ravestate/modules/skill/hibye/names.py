@@ -1,4 +1,4 @@
-"""The module and its slot."""
+"""The module, its signals and its slots."""
 
 from __future__ import annotations
 

@@ -147,11 +147,11 @@ class Video:
         self._capture = cv2.VideoCapture(str(self._path), cv2.CAP_FFMPEG)
         self._rate = self._capture.get(cv2.CAP_PROP_FPS) or 25.0
         if not self._capture.isOpened():
-            raise ValueError(f"{self._path} is no video that can be read: is it damaged or still being written?")
+            raise ValueError(f"{self._path} is not a readable video: is it damaged or still being written?")
         self._count = 0
         self._forward()
         if self._waiting is None:
-            raise ValueError(f"the video {self._path} has no picture that can be read: is it damaged?")
+            raise ValueError(f"the video {self._path} has no readable picture: is it damaged?")
 
     def _forward(self) -> None:
         import cv2

@@ -14,7 +14,7 @@ import numpy as np
 from .picture import Picture
 
 SURE = 0.5
-"""A face that MediaPipe finds counts from this confidence on."""
+"""A face that MediaPipe finds counts if its confidence is at least this."""
 SAME = 0.3
 """Two boxes with at least this overlap (intersection over union) belong to the same face."""
 MOST = 3
@@ -38,7 +38,7 @@ class Faces:
     """
 
     def __init__(self) -> None:
-        spec = find_spec("face_recognition_models")  # its import needs a module that new setuptools lack
+        spec = find_spec("face_recognition_models")  # to import it needs a module that new versions of setuptools lack
         if spec is None or not spec.submodule_search_locations:
             raise ImportError("No module named 'face_recognition_models'")
         models = Path(spec.submodule_search_locations[0]) / "models"

@@ -67,7 +67,7 @@ def from_bytes(data: bytes, shape: list[int] | None = None, encoding: str = "rgb
         channels, conversion = CHANNELS[encoding]
         step = step or width * channels
         if not 0 < width * channels <= step or len(data) != height * step:
-            raise ValueError(f"{len(data)} bytes are no picture of {width} x {height} pixels in {encoding}")
+            raise ValueError(f"{len(data)} bytes are not a picture of {width} x {height} pixels in {encoding}")
         rows = np.frombuffer(data, np.uint8).reshape(height, step)[:, : width * channels]
         pixels = np.ascontiguousarray(rows.reshape(height, width, channels))
         return Picture(pixels if conversion is None else cv2.cvtColor(pixels, conversion))
@@ -76,5 +76,5 @@ def from_bytes(data: bytes, shape: list[int] | None = None, encoding: str = "rgb
     except cv2.error as error:
         raise ValueError(f"the picture cannot be read: {error.err}") from None
     if pixels is None:
-        raise ValueError("the bytes are no picture that can be read (JPEG, PNG, WebP, BMP or TIFF)")
+        raise ValueError("the bytes are not a readable picture (JPEG, PNG, WebP, BMP or TIFF)")
     return Picture(cv2.cvtColor(pixels, cv2.COLOR_BGR2RGB))

@@ -1,6 +1,6 @@
 """A bridge process that joins the network of ROS 2 by DDS (cyclonedds), without an installed ROS 2.
 
-It carries only topics, no services. For those, it would need a sample's metadata, which the library does not offer.
+It carries only topics, no services. A service would need a sample's metadata, which the library does not offer.
 """
 
 # pyright: basic, reportMissingImports=false

@@ -112,7 +112,7 @@ class Ros1Node:
         self._rospy = rospy
         rospy.topics.QueuedConnection = self._to_subscriber  # instead of rospy's own queue and thread
         rospy.impl.tcpros_pubsub.TCPROSTransport = transport_class(self)
-        rospy.impl.simtime._is_use_simtime = lambda: False  # else rospy would follow /clock; only the agent may
+        rospy.impl.simtime._is_use_simtime = lambda: False  # else rospy would follow /clock; only the agent may do so
         self._call_class = call_class()
         rospy.init_node(name, argv=["node"], disable_signals=True, disable_rosout=True, log_level=rospy.ERROR)
         self._channels = {}
@@ -181,7 +181,7 @@ class Ros1Node:
         return subscriber
 
     def check(self, topic, header):
-        """Warn the agent about each of its subscriptions to a topic whose type differs from that of a publisher."""
+        """Warn the agent about each of its subscriptions to a topic whose type differs from the publisher's type."""
         for channel, binding in list(self._bindings.items()):
             if header and binding["kind"] == "subscriber" and binding["name"] == topic and not _suits(binding, header):
                 self._pipe.note(channel, _mismatch(binding, header))

@@ -96,7 +96,7 @@ class Ros2Node:
         self._executor.wake()
 
     def _look_at_types(self):
-        """Warn about each node that uses another type for a topic. ROS 2 would not connect them, and report nothing."""
+        """Warn about each node with another type for a topic. ROS 2 neither connects such nodes nor reports them."""
         for channel, binding in list(self._bindings.items()):
             name, type_ = binding["name"], binding["type"]
             if binding["kind"] == "subscriber":
@@ -267,7 +267,7 @@ class Ros2Node:
             return
         if kind == "action":
             thing.destroy()
-        else:  # the node must forget the entity first, because the executor keeps failing on a destroyed one
+        else:  # the node must forget the entity first, because the executor keeps failing on a destroyed entity
             forget = {"subscriber": "subscription", "server": "service"}.get(kind, kind)
             getattr(self._node, f"destroy_{forget}")(thing)
         self._executor.wake()

@@ -10,7 +10,7 @@ from typing import Any
 SYNCHRONOUS, UTF8, CHARACTERS = 2, 1, 1
 RATE, PITCH, RANGE = 1, 3, 4  # numbers of parameters
 WORD, END = 1, 0  # kinds of events
-NORMAL_RATE = 165  # words a minute
+NORMAL_RATE = 165  # words per minute
 
 
 class Event(ctypes.Structure):
