@@ -1,42 +1,78 @@
-"""The statement that is taken up, and its kind."""
+"""The statement that the listener takes up, and its highlight."""
 
 from __future__ import annotations
 
-from collections import Counter
+import random
 
 import pytest
 
-from quality import measure
-from ravestate.modules.skill.wildtalk.listening.echo import CORE, told_in
+from ravestate.modules.skill.wildtalk.listening import State
+from ravestate.modules.skill.wildtalk.listening.echo import CORE, Told, told_in
 from ravestate.modules.skill.wildtalk.listening.material import material
-from ravestate.modules.skill.wildtalk.listening.taking_up import kind_of, weightiest
+from ravestate.modules.skill.wildtalk.listening.taking_up import Taken, replies, taken_from
 
 from .conftest import seen
 
-FLOOR = 0.9
-"""The minimum share of right kinds in taken_rows.tsv: the last result rounded down."""
+TENSES = ("past", "now", "plan", "might", "once", "not")
+PERSONS = ("mine", "theirs", "thing", "yours", "piece")
+MOODS = ("", "sad", "angry", "glad", "tired", "quiet")
 
 
-def kind_in(text: str) -> str:
-    phrases = material()
-    told = weightiest(told_in(seen(text), phrases.living), phrases.told)
-    kind = told and kind_of(told, phrases.told)
-    return "-" if told is None else kind.name if kind else "any"
+def taken(text: str, known: str = "") -> Taken | None:
+    return taken_from(seen(text), material().living, known)
 
 
-def test_the_weightiest_statement_and_its_kind_are_found() -> None:
-    rows = measure.labelled("taken_rows")
-    wrong = [(text, label, found) for text, label in rows if (found := kind_in(text)) not in label.split("|")]
-    assert 1 - len(wrong) / len(rows) >= FLOOR, wrong
-    assert max(Counter(text for text, _ in rows).values()) == 1
+@pytest.mark.parametrize(
+    ("text", "highlight", "tense"),
+    [
+        ("My uncle gave me three rusty lanterns.", "three rusty lanterns", "past"),
+        ("we are flying to the island with two accordions", "two accordions", "plan"),
+        ("it rained, and the parrot stole half my sandwich", "half your sandwich", "past"),
+        ("onto a garden gnome", "a garden gnome", "now"),
+    ],
+)
+def test_the_phrase_that_says_most_is_the_highlight(text: str, highlight: str, tense: str) -> None:
+    found = taken(text)
+    assert found is not None
+    assert highlight in found.highlight
+    assert found.told.tense == tense
+
+
+def test_what_was_said_before_is_no_highlight_again() -> None:
+    first = taken("there is a badger in the greenhouse")
+    again = taken("the badger ate my marrows", "there is a badger in the greenhouse")
+    assert first is not None and "badger" in first.highlight
+    assert again is not None and "badger" not in again.highlight
+
+
+@pytest.mark.parametrize("text", ["I don't have a parrot", "if I had a trombone", "we could buy a canoe"])
+def test_what_is_denied_or_only_imagined_is_no_highlight(text: str) -> None:
+    found = taken(text)
+    assert found is None or not found.highlight
+
+
+@pytest.mark.parametrize("text", ["my cousin Rosalind", "I met Rosalind", "bye robot"])
+def test_a_name_of_a_person_alone_is_no_highlight(text: str) -> None:
+    found = taken(text)
+    assert found is None or "rosalind" != found.highlight.lower()
+    assert found is None or "robot" not in found.highlight.lower()
+
+
+@pytest.mark.parametrize("text", ["yes", "hm", "why not?", "Is there a badger in the greenhouse?"])
+def test_answers_and_questions_are_not_taken_up(text: str) -> None:
+    assert taken(text) is None
 
 
 def test_an_echo_is_short_and_no_fragment() -> None:
-    for text, _ in measure.labelled("taken_rows"):
+    for text in ("he came late", "they took the last of the big green boxes away from us on a Monday in the rain"):
         for told in told_in(seen(text), material().living):
             assert told.core == "" or 2 < len(told.core.split()) <= CORE + 1, text
 
 
-@pytest.mark.parametrize("text", ["you can get stamps there", "I know.", "they had", "you could hear the sea at night"])
-def test_anybodys_you_and_ellipses_are_not_taken_up(text: str) -> None:
-    assert kind_in(text) == "-"
+@pytest.mark.parametrize("mood", MOODS)
+@pytest.mark.parametrize("person", PERSONS)
+@pytest.mark.parametrize("tense", TENSES)
+def test_each_person_tense_and_mood_has_replies(person: str, tense: str, mood: str) -> None:
+    told = Taken(Told("the roof leaks", person, tense), "the roof")
+    groups = list(replies(told, material().taking_up, mood, State(), random.Random(0)))
+    assert sum(len(lines) for group in groups for lines in group) >= 2

@@ -19,6 +19,7 @@ from ravestate.modules.meta.nlp.tree import SUBJECTS, Tree, Word
 
 from .bank import ANSWER, EXACTLY
 from .echo import question_of, words_of
+from .highlight import highlight_in
 from .material import Material
 from .moment import Line, Moment
 from .roles import turned
@@ -85,7 +86,7 @@ class Asked:
     """Its class in asks.yaml."""
     area: Moment | None
     values: Mapping[str, str]
-    """The values of the roles: ``first`` and ``second``, ``about``, ``question``, ``word``, ``short``, ``picked``."""
+    """The values of the roles: ``first`` and ``second``, ``about``, ``word``, ``short``, ``picked``."""
     groups: tuple[str, ...]
     """The groups of asked.yaml to try, the most specific first."""
 
@@ -155,8 +156,7 @@ def asked_in(
     values = {
         "first": options[0] if options else "",
         "second": options[1] if options else "",
-        "about": about(phrases, seen.tree, words),
-        "question": question,
+        "about": _named(seen, words) or about(phrases, seen.tree, words),
         "word": _word(seen),
         "last": last,
         "short": re.split(r"(?<=[.!?]) |, (?=and|but|or|so)", last)[0].rstrip(",") if last else "",
@@ -212,6 +212,12 @@ def about(phrases: Material, tree: Tree, words: Sequence[Word]) -> str:
             if text:
                 return text
     return ""
+
+
+def _named(seen: Analysis, words: Sequence[Word]) -> str:
+    """Return the phrase of a question that says most; empty if none stands out."""
+    found = highlight_in(seen, words, asked=True)
+    return "" if found is None else found.text
 
 
 def _left(tree: Tree, part: Word, noun: Word) -> bool:

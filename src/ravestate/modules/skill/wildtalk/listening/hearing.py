@@ -22,6 +22,7 @@ from .asked import Asked, asked_in, options_between
 from .asking import FEW_WORDS, SHORT, asking_sentence, kind_of
 from .bank import CLOSE, Found
 from .following import follow_up_in, rest_of
+from .grave import is_grave
 from .lookup import ALIKE, is_dark, near_in
 from .material import Material
 from .moment import Moment
@@ -100,7 +101,7 @@ class Hearing:
     tone: str = ""
     """The tone of the utterance; empty if it is unknown."""
     mood: str = ""
-    """The tone of the utterance, but sad as long as the talk is sad."""
+    """The tone of the utterance; in a sad talk, sad, or ``quiet`` if the utterance itself is not sad."""
     near: list[Found] = field(default_factory=list[Found])
     """The entries of the bank that resemble the utterance, the most suitable first."""
     follow_up: Moment | None = None
@@ -163,8 +164,9 @@ def _understand(found: Hearing, phrases: Material, heard: Heard, seen: Analysis,
     found.near = near_in(phrases, seen, asking, state, feeling)
     dark = is_dark(seen, found.near) or found.sad
     found.tone = "sad" if dark else _tone(phrases, seen, found.moves, feeling)
-    grieving = state.tone == "sad" and (state.turns > LASTING or not _SAD.isdisjoint(seen.feelings) or found.tone == "")
-    found.mood = "sad" if grieving else found.tone
+    grieving = state.tone == "sad" and (state.turns > LASTING or not _SAD.isdisjoint(seen.feelings))
+    quiet = state.tone == "sad" and found.tone in ("", "glad")
+    found.mood = "quiet" if quiet and not grieving else "sad" if grieving else found.tone
     nearest = found.near[0] if found.near else Found(0.0, 0.0, Moment("", {}), "")
     found.follow_up = follow_up_in(
         phrases.bank, state, seen, asking, nearest if nearest.fit >= ALIKE else None, dark=dark
@@ -195,6 +197,7 @@ def _understand(found: Hearing, phrases: Material, heard: Heard, seen: Analysis,
         and not (asking or is_request(seen) or feeling or found.meanings or answer.unsure)
         and not (alike and (size > SHORT or nearest.score >= CLOSE)),
         "dark": dark,
+        "grave": is_grave(seen.normal.text),
         "pending": pending is not None,
         "closed": pending is not None and pending.closed,
         "answering": answering,

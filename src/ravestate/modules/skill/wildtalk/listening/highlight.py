@@ -46,6 +46,8 @@ _EMPTY = word_set(
 _TIMES = word_set("monday tuesday wednesday thursday friday saturday sunday today yesterday tomorrow tonight")
 _LEFT = ("det", "amod", "compound", "nummod", "poss", "case", "nmod", "quantmod", "predet", "advmod")
 _DEFINITE = word_set("the my our your his her its their it's")
+_LAST = word_set("lol haha btw tho though lmao xd pls please again too")
+"""Words that may be tagged as a part of the phrase before them."""
 _PLACES = ("GPE", "LOC", "FAC", "EVENT", "PRODUCT", "WORK_OF_ART", "NORP")
 """Kinds of names that may be a highlight."""
 _PRONOUNS = word_set("mine yours his hers ours theirs")
@@ -69,13 +71,14 @@ class Highlight:
     """The number of its noun in the utterance."""
 
 
-def highlight_in(seen: Analysis, words: Sequence[Word], known: str = "") -> Highlight | None:
+def highlight_in(seen: Analysis, words: Sequence[Word], known: str = "", *, asked: bool = False) -> Highlight | None:
     """Return the highlight of some words of an utterance; None if nothing in them stands out.
 
     Args:
         seen: The analysis of the utterance.
         words: The words of its statements.
         known: What was said before; its words count less.
+        asked: Whether the words are a question, which asserts nothing.
     """
     lexicon, tree = loaded_lexicon(), seen.tree
     before = set(known.lower().split())
@@ -84,23 +87,36 @@ def highlight_in(seen: Analysis, words: Sequence[Word], known: str = "") -> High
     places = {word.index for word in words if any(word.low in name for name in named)}
     found: list[Highlight] = []
     for place, noun in enumerate(words):
-        if not _stands_out(tree, noun, places):
+        if not _names(tree, noun, places) or not (asked or _is_asserted(tree, noun)):
             continue
-        for phrase in _phrases(tree, noun, inside):
-            if len(phrase) > LONGEST or any(word.pos == "PUNCT" and word.text not in "-’'" for word in phrase):
+        for phrase in map(_without_tail, _phrases(tree, noun, inside)):
+            if not 0 < len(phrase) <= LONGEST or any(word.pos == "PUNCT" and word.text not in "-’'" for word in phrase):
                 continue
             told = _information(lexicon, phrase, before)
             told *= 1 + (LATER - 1) * place / len(words)
             told *= SUBJECT if noun.dep in SUBJECTS else 1.0
-            text = echo(tree, phrase)
+            text = _written(lexicon, echo(tree, phrase))
             plainly = phrase[0].low in _DEFINITE and not any(word.pos in ("ADJ", "NUM", "ADP") for word in phrase)
             if told >= (KNOWN_LEAST if plainly else LEAST) and text:
                 found.append(Highlight(text, told, noun.index))
     return max(found, key=lambda one: one.information, default=None)
 
 
-def _stands_out(tree: Tree, noun: Word, places: set[int]) -> bool:
-    """Return whether a word can be the noun of a highlight: it is asserted, and names something."""
+def _written(lexicon: Lexicon | None, text: str) -> str:
+    """Return a phrase with capitals for its names: *to Portugal*."""
+    return (
+        text if lexicon is None else " ".join(lexicon.name(word) if word.islower() else word for word in text.split())
+    )
+
+
+def _without_tail(phrase: list[Word]) -> list[Word]:
+    while phrase and phrase[-1].low in _LAST:
+        phrase = phrase[:-1]
+    return phrase
+
+
+def _names(tree: Tree, noun: Word, places: set[int]) -> bool:
+    """Return whether a word can be the noun of a highlight: it names something. `places`: the words of other names."""
     if noun.pos not in ("NOUN", "PROPN") or len(noun.low) < 3:
         return False
     counted = any(word.low not in ("one", "1") for word in tree.children(noun, "nummod"))
@@ -110,7 +126,12 @@ def _stands_out(tree: Tree, noun: Word, places: set[int]) -> bool:
         return False
     if noun.pos == "PROPN" and noun.index not in places:
         return False  # a person's name alone is no highlight
-    if {word.low for word in tree.children(noun)} & {"no", "any", "what", "which"}:
+    return not {word.low for word in tree.children(noun)} & {"no", "what", "which"}
+
+
+def _is_asserted(tree: Tree, noun: Word) -> bool:
+    """Return whether a noun is no part of a denial or of something imagined."""
+    if any(word.low == "any" for word in tree.children(noun)):
         return False
     for above in tree.ancestors(noun):
         helpers = {word.low for word in tree.children(above)}

@@ -65,7 +65,7 @@ def replies(
     Args:
         taken: The statement and its highlight.
         lines: The authored lines of taking_up.yaml.
-        mood: ``sad``, ``angry``, ``glad``, ``tired``, or empty.
+        mood: ``sad``, ``angry``, ``glad``, ``tired``, ``quiet``, or empty.
         state: The state of the talk.
         chance: The source of random choices.
     """
@@ -82,7 +82,7 @@ def replies(
 
 def _names(told: Told, mood: str) -> list[str]:
     """Return the names of the groups that reply to a statement, the most specific first."""
-    if mood:
+    if mood and told.subject != "yours":
         return [f"{mood} {told.tense}", f"{mood} {told.subject}", mood]
     if told.tense in OWN:
         return [f"{told.subject} {told.tense}", told.tense]
@@ -93,8 +93,10 @@ def _front(taken: Taken, lines: Mapping[str, Moment], mood: str, state: State, c
     """Return a frame with the highlight or, now and then, with a short statement; an empty line if there is neither."""
     told = taken.told
     lately = any("{told}" in text.lower() for text in state.recent[-ECHOED:])
+    if told.subject == "yours":
+        return Line("", frozenset())
     if taken.highlight:
-        frames = lines["frames"].lines(mood, told.tense, told.subject, "say")[0]
+        frames = lines["frames"].lines(mood, told.tense, "say")[0]
     elif told.core and not lately:
         frames = lines["echoes"].lines(mood, "say")[0]
     else:

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, cast
 
 from ravestate.language.cache import cached
 from ravestate.language.matcher import shared_encoder
@@ -58,5 +58,5 @@ def _learnt(tones: Sequence[str], vectors: Rows) -> NDArray[np.float32]:
     weighted = inputs * weight[:, None]
     square = (weighted.T @ inputs).astype(np.float64) + PENALTY * np.eye(inputs.shape[1])
     wanted = weighted.T @ np.eye(len(TONES), dtype=np.float32)[place]
-    weights: Any = np.linalg.solve(square, wanted.astype(np.float64))
-    return np.asarray(weights, dtype=np.float32)
+    weights = cast("NDArray[np.float64]", np.linalg.solve(square, wanted.astype(np.float64)))
+    return weights.astype(np.float32)
