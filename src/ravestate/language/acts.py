@@ -8,6 +8,7 @@ from collections.abc import Collection, Mapping, Sequence
 from .contractions import word_set
 from .feelings import clauses
 from .matcher import Match, Matcher, bundled_matcher
+from .nonsense import is_nonsense
 from .normal import normalise, plain
 from .sentences import sentences as sentences_of
 from .shape import shape
@@ -98,6 +99,7 @@ def _read(sentences: Sequence[str]) -> list[_Sentence]:
     matcher = bundled_matcher("acts")
     sentences = [sentence[:LONGEST] for sentence in sentences]
     matches = [None if _taken_back(matcher, one) else one for one in matcher.match_all(sentences)]
+    matches = [None if is_nonsense(text) else one for text, one in zip(sentences, matches, strict=True)]
     return [_Sentence(matcher, *pair) for pair in zip(sentences, matches, strict=True)]
 
 

@@ -10,12 +10,13 @@ from importlib.resources import files
 
 from ravestate.errors import PlatformError
 from ravestate.language import Encoder, Matcher, Reranker, plain, read_examples, sentences
+from ravestate.language.nonsense import is_nonsense
 from ravestate.modules.meta.nlp.pipeline import Pipeline
 from ravestate.modules.meta.nlp.statement import Statement
 from ravestate.modules.meta.nlp.statements import statements_of
 
 from .listening.material import material
-from .listening.tongue import is_nonsense, tongue_of
+from .listening.tongue import tongue_of
 
 FAR, NEAR, UNRELATED = 0.45, 0.56, -10.9
 """The gate refuses answers whose similarity to the conversation is below FAR. From FAR to NEAR, it refuses those that

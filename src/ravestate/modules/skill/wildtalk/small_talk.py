@@ -118,7 +118,10 @@ def _answer(heard: Heard, state: State, chance: random.Random) -> Answer:
     if told is None or any(told.name in said for said in state.said):
         return listener().answer(heard, state, chance)
     rest = Heard(told.rest, analyse(told.rest, pipeline(""), (), (told.name,)), told.name)
-    return listener().answer(rest, state, chance).opened(f"Hello {told.name}.", heard.text)
+    answer = listener().answer(rest, state, chance)
+    if answer.weak:  # the greeting alone is better than a greeting with a phrase that fits everything
+        return Answer("", answer.state).opened(f"Hello {told.name}, good to meet you.", heard.text)
+    return answer.opened(f"Hello {told.name}.", heard.text)
 
 
 def is_open(state: State) -> bool:

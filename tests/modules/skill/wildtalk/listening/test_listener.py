@@ -18,7 +18,6 @@ from ravestate.modules.skill.wildtalk.listening.material import Line, Moment, ma
 from ravestate.modules.skill.wildtalk.listening.moment import roles_in
 from ravestate.modules.skill.wildtalk.listening.roles import roles_of
 from ravestate.modules.skill.wildtalk.listening.state import Pending
-from ravestate.modules.skill.wildtalk.listening.taking_up import ECHOED
 
 from .conftest import listener_with, seen
 
@@ -81,17 +80,6 @@ def test_a_sad_statement_gets_no_exclamation(begin: Callable[[int], Any]) -> Non
         talk = begin(seed)
         talk.say("my uncle died in May")
         assert "!" not in talk.say("he left me a crate of rusty lanterns")
-
-
-@pytest.mark.parametrize("seed", range(2))
-def test_it_echoes_at_most_once_in_four_answers(seed: int, begin: Callable[[int], Any]) -> None:
-    talk = begin(seed)
-    places: list[int] = []
-    for place, text in enumerate(ODD * 2):
-        talk.say(text)
-        places += [place] * ("{told}" in talk.state.recent[-1].lower())
-    assert places
-    assert all(second - first >= ECHOED for first, second in itertools.pairwise(places))
 
 
 def test_it_asks_no_third_question_in_a_row(begin: Callable[[int], Any]) -> None:

@@ -7,7 +7,7 @@ import random
 import pytest
 
 from ravestate.modules.skill.wildtalk.listening import State
-from ravestate.modules.skill.wildtalk.listening.echo import CORE, Told, told_in
+from ravestate.modules.skill.wildtalk.listening.echo import Told
 from ravestate.modules.skill.wildtalk.listening.material import material
 from ravestate.modules.skill.wildtalk.listening.taking_up import Taken, replies, taken_from
 
@@ -54,19 +54,13 @@ def test_what_is_denied_or_only_imagined_is_no_highlight(text: str) -> None:
 @pytest.mark.parametrize("text", ["my cousin Rosalind", "I met Rosalind", "bye robot"])
 def test_a_name_of_a_person_alone_is_no_highlight(text: str) -> None:
     found = taken(text)
-    assert found is None or "rosalind" != found.highlight.lower()
+    assert found is None or found.highlight.lower() != "rosalind"
     assert found is None or "robot" not in found.highlight.lower()
 
 
 @pytest.mark.parametrize("text", ["yes", "hm", "why not?", "Is there a badger in the greenhouse?"])
 def test_answers_and_questions_are_not_taken_up(text: str) -> None:
     assert taken(text) is None
-
-
-def test_an_echo_is_short_and_no_fragment() -> None:
-    for text in ("he came late", "they took the last of the big green boxes away from us on a Monday in the rain"):
-        for told in told_in(seen(text), material().living):
-            assert told.core == "" or 2 < len(told.core.split()) <= CORE + 1, text
 
 
 @pytest.mark.parametrize("mood", MOODS)

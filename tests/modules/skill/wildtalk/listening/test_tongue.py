@@ -2,8 +2,9 @@
 
 import pytest
 
+from ravestate.language.nonsense import is_nonsense
 from ravestate.modules.skill.wildtalk.listening.material import material
-from ravestate.modules.skill.wildtalk.listening.tongue import is_nonsense, is_number, tongue_of
+from ravestate.modules.skill.wildtalk.listening.tongue import is_number, tongue_of
 
 
 @pytest.mark.parametrize(

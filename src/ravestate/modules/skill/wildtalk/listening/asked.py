@@ -18,7 +18,7 @@ from ravestate.modules.meta.nlp.question_word import AUXILIARIES, QUESTION_WORDS
 from ravestate.modules.meta.nlp.tree import SUBJECTS, Tree, Word
 
 from .bank import ANSWER, EXACTLY
-from .echo import question_of, words_of
+from .echo import words_of, wraps
 from .highlight import highlight_in
 from .material import Material
 from .moment import Line, Moment
@@ -41,9 +41,12 @@ EXACT = word_set("fact why choose measure would_you")
 """Kinds whose answers suit few other questions of the same area."""
 OWN = word_set("about_you would_you favourite")
 """Kinds that ask about the agent."""
+_WRAPPING = word_set("know tell explain say think believe guess suppose recommend help show give")
 _YOU = word_set("you your yours yourself u ur")
 BY_MOVE = {"advice": "how_to", "opinion": "you_think"}
 """Move → the kind of a question whose own kind is unknown."""
+LEAST_WRAPPED = 4
+"""The least number of words of a question behind *do you think*, these words included."""
 BRIEF = 4
 """The maximum number of words of a choice without a verb: *tea or coffee*."""
 CALM = ("fact", "why", "about_you")
@@ -121,6 +124,8 @@ def asked_in(
         request: Whether the utterance is an order.
     """
     words = words_of(seen.tree, asking)
+    wrapped = len(words) > LEAST_WRAPPED and wraps(words[:4])
+    words = words[3:] if wrapped else words
     options = options_in(seen.tree, words)
     least = SURE if asking else ORDERED if request else UNASKED
     found = [one for one in seen.asks.values() if one.score >= least and (not asking or one.text == asking)]
@@ -137,9 +142,10 @@ def asked_in(
     if kind == "choose" and compared and words and words[0].low in QUESTION_WORDS:
         kind = "fact"  # "which is heavier, gold or lead?"
     plainly = asking and words and (asking.endswith("?") or words[0].low in {*QUESTION_WORDS, *AUXILIARIES})
-    question = question_of(seen.tree, asking) if asking else ""
-    if plainly and kind in ("", "about_you") and question.startswith("Whether "):
+    if asking and wrapped and kind in ("", "about_you"):
         kind = "predict"  # "do you think that they are angry?"
+    if plainly and kind in ("", "fact") and _asks_agent(words):
+        kind = "would_you" if words[0].low in ("would", "could") else "about_you"
     if plainly and not kind:
         kind = BY_MOVE.get(moves[0] if moves else "", "")
     if plainly and (not kind or (kind in OWN and _YOU.isdisjoint(word.low for word in words))):
@@ -173,6 +179,12 @@ def asked_in(
         + ["question", "about", "last", "short", "word"]
     )
     return Asked(kind, area, values, tuple(groups))
+
+
+def _asks_agent(words: Sequence[Word]) -> bool:
+    """Return whether a yes-no question is about the agent: *do you get tired of it*, but not *do you know who*."""
+    first, second, third = [word.low for word in words[:3]] if len(words) > 2 else ("", "", "")
+    return first in AUXILIARIES and second in _YOU and third not in _WRAPPING
 
 
 def area_of(phrases: Material, tree: Tree, words: Sequence[Word], kind: str) -> Moment | None:

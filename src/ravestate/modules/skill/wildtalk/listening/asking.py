@@ -5,21 +5,17 @@ from __future__ import annotations
 import re
 from functools import lru_cache
 
-from ravestate.language.contractions import word_set
 from ravestate.language.matcher import bundled_matcher
 from ravestate.modules.meta.nlp.analysis import Analysis
 from ravestate.modules.meta.nlp.question_word import QuestionWord
 
+from .echo import ASKING, is_astonished
 from .turns import is_cry, is_news
 
 FEW_WORDS = 3
 """The maximum number of words of a short sentence. Short sentences resemble many others."""
 SHORT = 4
 """The maximum number of words in a short answer."""
-_ASKING = word_set(
-    "who what when where why which how whose do does did is are was can could will would should may have"
-)
-"""Closed-class words that begin a question."""
 _AMAZED = re.compile(r"\b(?:can|could|would) you (?:imagine|believe)\b(?: (?:that|it|this))?\W*$", re.IGNORECASE)
 """The end of a statement that astonishes: *he ate it all, can you believe it?*"""
 
@@ -30,10 +26,8 @@ def asking_sentence(seen: Analysis) -> str:
         return ""
     if is_news(seen.sentences[-1]) or is_cry(seen.text):
         return ""
-    marked = [sentence for sentence in seen.sentences if sentence.rstrip().endswith("?")]
-    opened = [
-        sentence for sentence in seen.sentences if sentence.split()[:1] and sentence.split()[0].lower() in _ASKING
-    ]
+    marked = [one for one in seen.sentences if one.rstrip().endswith("?") and not is_astonished(seen, one)]
+    opened = [sentence for sentence in seen.sentences if sentence.split()[:1] and sentence.split()[0].lower() in ASKING]
     if not marked and not opened and (seen.question is QuestionWord.YES_NO or seen.text.rstrip().endswith("!")):
         return ""  # "I was curious whether you sleep", "oh, we won!"
     if len(seen.sentences) > 1:  # "What?? The whole roof is gone"

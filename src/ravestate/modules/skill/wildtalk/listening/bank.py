@@ -90,7 +90,11 @@ class Bank:
 
     def tone(self, text: str) -> str:
         """Return the tone of a text; empty if none is sure, and before `load`."""
-        return "" if self._tones is None else self._tones.tone(text)[0]
+        return "" if self._tones is None else self._tones.tone(text)
+
+    def brightness(self, text: str) -> float:
+        """Return by how much gladness exceeds the dark tones of a text; 0 before `load`."""
+        return 0.0 if self._tones is None else self._tones.brightness(text)
 
     def answering(self, question: str, lines: Sequence[Line], least: float = ANSWER) -> list[Line]:
         """Return the lines that may answer a question, the likeliest first. Before `load`, return all, in their order."""

@@ -1,6 +1,6 @@
 """The user's own words from the agent's view: *my dog bit me* becomes *your dog bit you*.
 
-The listener echoes a question before it admits that it does not know the answer, and now and then a statement.
+The listener repeats a phrase of a statement, and now and then the whole statement.
 """
 
 from __future__ import annotations
@@ -15,9 +15,13 @@ from ravestate.modules.meta.nlp.tree import SUBJECTS, Tree, Word
 
 LONGEST, SHORTEST = 15, 2
 """The maximum and the minimum number of words of a statement that can be taken up."""
-CORE = 7
-"""The maximum number of words of an echo."""
 
+ASKING = word_set("who what when where why which how whose do does did is are was can could will would should may have")
+"""Closed-class words that begin a question."""
+_ASKED = word_set(
+    "who what when where why which how whose whether if or you your right correct yes no ok okay huh eh innit"
+)
+"""Words of questions that are worded like a statement: *you are not mad, are you?*, *is correct, yes?*"""
 _TURNED = {
     **dict.fromkeys(("i", "we", "me", "us"), "you"),
     **dict.fromkeys(("my", "our"), "your"),
@@ -53,8 +57,6 @@ _MOVING = word_set("go come move fly travel drive leave arrive visit meet start"
 """Verbs whose progressive form tells a plan: *we are flying to Rome*."""
 _USUALLY = word_set("always usually often every sometimes never")
 """Words of a habit."""
-_INNER = ("relcl", "advcl", "acl", "appos", "conj", "cc", "prep", "punct", "ccomp")
-"""Relations of words that the core of a statement does without."""
 _POLITE = word_set("think know believe say tell guess suppose reckon")
 """Verbs that only wrap a question: *how old do you think he is*."""
 
@@ -69,8 +71,6 @@ class Told:
     """``mine``, ``theirs`` (somebody else), ``thing``, ``yours`` (the agent), or ``piece`` for a statement without a verb."""
     tense: str = "now"
     """``past``, ``now``, ``plan``, ``might`` for what is only imagined, ``once`` for a habit of the past, or ``not`` if denied."""
-    core: str = ""
-    """The same as `echo` in at most `CORE` words; empty if it would be a fragment."""
     start: int = 0
     """The number of its first word in the utterance."""
 
@@ -82,30 +82,25 @@ def told_in(seen: Analysis, living: frozenset[str]) -> list[Told]:
         seen: The analysis of the utterance.
         living: The lemmas of nouns for living beings.
     """
-    told = [words_of(seen.tree, one) for one in reversed(seen.sentences) if not one.rstrip().endswith("?")]
+    told = [
+        words_of(seen.tree, one)
+        for one in reversed(seen.sentences)
+        if not one.rstrip().endswith("?") or is_astonished(seen, one)
+    ]
     clauses = [clause for words in told for clause in _clauses(seen.tree, words, living)]
     return clauses or list(filter(None, (_fragment(seen.tree, words) for words in told)))
 
 
-def question_of(tree: Tree, sentence: str) -> str:
-    """Return a question from the agent's view: *Why do hamsters bite?*; empty if it is too long."""
-    words = _trimmed(words_of(tree, sentence))
-    doubt = next(
-        (at for at, word in enumerate(words) if at and word.low in ("whether", "if") and word.dep == "mark"), 0
-    )
-    if doubt and sentence.rstrip()[-1:] != "?":  # "I don't know whether I should go"
-        words = words[doubt:]
-    if len(words) > 2 and words[0].low in _YOU and words[1].low == "know":  # "you know how to bake bread?"
-        words = words[2:]
-    place = next((at for at in range(len(words) - 3) if _wraps(words[at : at + 4])), None)
-    whether = ""
-    if place is not None:
-        rest = words[place + 3 :]
-        rest = rest[1:] if rest[:1] and rest[0].low in ("me", "that", "if") else rest
-        whether = "whether " if place == 0 and rest[:1] and rest[0].low not in QUESTION_WORDS else ""
-        words = words[:place] + rest
-    text = whether + echo(tree, words)
-    return f"{text[:1].upper()}{text[1:]}?" if SHORTEST <= len(words) <= LONGEST else ""
+def is_astonished(seen: Analysis, sentence: str) -> bool:
+    """Return whether a sentence is a statement about others that only ends like a question: *he says it relaxes them??*"""
+    words = [word for word in words_of(seen.tree, sentence) if word.pos not in ("PUNCT", "INTJ", "CCONJ")]
+    low = [word.low for word in words]
+    if len(low) < 4 or low[0] in ASKING or not _ASKED.isdisjoint(low):
+        return False
+    subject = next((word for word in words if word.dep in SUBJECTS), None)
+    verb = None if subject is None else seen.tree.head(subject)
+    helpers = [] if verb is None else [verb, *seen.tree.children(verb, "aux", "auxpass")]
+    return subject is not None and all(word.index > subject.index for word in helpers)
 
 
 def words_of(tree: Tree, sentence: str) -> list[Word]:
@@ -134,12 +129,14 @@ def _addresses(word: Word, before: Word | None) -> bool:
     return word.low in _ADDRESSING and (before is None or before.low != "thank")
 
 
-def _wraps(words: Sequence[Word]) -> bool:
+def wraps(words: Sequence[Word]) -> bool:
     """Return whether the first three words only wrap a question: *do you think he*, *can you tell me*."""
     first, second, third, after = words
     wraps = first.tag in ("MD", "VBP", "VBD") and second.low in _YOU and third.lemma.lower() in _POLITE
     if third.lemma.lower() in ("say", "tell"):
         return wraps and after.low in ("me", "us")  # "would you tell him?" is no wrapping
+    if third.lemma.lower() == "know":
+        return wraps and after.low in {*QUESTION_WORDS, "if", "whether"}  # "do you know any songs?" is no wrapping
     return wraps and after.low not in ("about", "of") and after.pos != "PROPN"
 
 
@@ -191,7 +188,6 @@ def _told(tree: Tree, verb: Word, living: frozenset[str], inside: set[int]) -> T
         echo(tree, words),
         _person(tree, subject, living),
         _tense(tree, verb, subjects),
-        core=_core(tree, verb, subjects, words) if words else "",
         start=subjects[0].index,
     )
 
@@ -244,30 +240,6 @@ def _is_cut(tree: Tree, verb: Word) -> bool:
     return verb.lemma in _BARE and not after
 
 
-def _core(tree: Tree, verb: Word, subjects: Sequence[Word], words: Sequence[Word]) -> str:
-    """Return the words of a clause, or only its subject, verb and object, if there are at most `CORE` of them."""
-    if tree.children(verb, "mark"):
-        return ""  # "because it was late"
-    if len(words) > CORE:
-        main = tree.children(verb, "aux", "auxpass", "neg", "prt")
-        rest = tree.children(verb, "dobj", "attr", "acomp", "oprd", "xcomp")
-        rest = rest[:1] if rest else tree.children(verb, "prep", "advmod")[:1]
-        kept = {verb.index, *(word.index for part in (*main, *rest) for word in _lean(tree, part))}
-        kept |= {word.index for subject in subjects for word in tree.subtree(subject)}
-        words = [word for word in words if word.index in kept]
-        if not rest:
-            return ""
-    return echo(tree, words) if SHORTEST < len(words) <= CORE else ""
-
-
-def _lean(tree: Tree, word: Word) -> Iterator[Word]:
-    """Yield a word with its dependents, but without further clauses and phrases."""
-    yield word
-    for child in tree.children(word):
-        if child.dep not in _INNER:
-            yield from _lean(tree, child)
-
-
 def _is_slip(tree: Tree, subject: Word, verb: Word) -> bool:
     """Return whether verb and subject disagree, as in *she live here*. Nobody likes to hear their own slips."""
     single = subject.low in ("he", "she", "it") or subject.tag == "NN"
@@ -313,4 +285,4 @@ def _fragment(tree: Tree, words: Sequence[Word]) -> Told | None:
     if not nominal or not SHORTEST <= len(kept) <= LONGEST or any(word.pos in ("VERB", "AUX") for word in kept):
         return None
     text = echo(tree, kept)
-    return Told(text, "piece", core=text if len(kept) <= CORE else "", start=kept[0].index)
+    return Told(text, "piece", start=kept[0].index)

@@ -14,6 +14,7 @@ from ravestate.language.acts import is_playful
 from ravestate.language.contractions import word_set
 from ravestate.language.feelings import SORROWS
 from ravestate.language.matcher import Match
+from ravestate.language.nonsense import is_nonsense
 from ravestate.modules.meta.nlp.analysis import ADVICE, Analysis
 from ravestate.modules.meta.nlp.question_word import QuestionWord
 from ravestate.modules.meta.nlp.statement import Statement
@@ -29,7 +30,7 @@ from .moment import Moment
 from .roles import Roles, has_verb, is_request, roles_of, turned
 from .state import LASTING, State
 from .taking_up import Taken, taken_from
-from .tongue import is_nonsense, is_number, tongue_of
+from .tongue import is_number, tongue_of
 from .turns import is_leaving, turns_in
 
 SURE, MEANT = 0.85, 0.7
@@ -38,7 +39,7 @@ EXACT = 0.97
 """The least confidence at which a moment decides the answer even if it suits no likely move."""
 CHANGING = "no_questions"
 """The moment that changes the talk. No entry of the bank takes its place."""
-BARE = 2
+BARE = 3
 """The maximum number of words of an answer that only says yes or no. Without its question, it resembles nothing."""
 FINER = 0.1
 """The bonus of a moment over feelings and acts, because a moment is more specific."""
@@ -50,14 +51,21 @@ CLOUDED = 0.85
 """The least confidence at which a sad moment ends a glad tone."""
 ASKED = 0.8
 """The least confidence at which the agent does what the user requests."""
+BRIGHT, BRIGHTEST = 0.0, ("joy",)
+"""The least brightness of an utterance with one of these feelings: *that's Portugal gone!* is no good news."""
 FEW = 0.75
 """The confidence that a short sentence needs."""
+SHORTLY = 7
+"""The maximum number of words of a statement that is repeated as a whole."""
+LONG = 12
+"""The least number of words of an utterance that says itself why the user feels so."""
 BRIEFLY = 5
 """The maximum number of words of a feeling about somebody that has phrases of its own: *my mother is ill*."""
 ENDINGS = ("stop", "quiet")
 """Acts that count only if their confidence is high."""
 _OFFER = re.compile(r"(?:do you want|would you like|shall i|can i).{0,9} (?:know|hear|see|tell|show)\b", re.IGNORECASE)
 """The user's offer to tell something."""
+_MACHINES = word_set("robot bot machine computer program ai chatbot")
 _UNENDING = word_set("and but or because if the a an my your is 's are 're 'm to")
 """Closed-class words that cannot end an utterance."""
 _SAD = SORROWS | {"tiredness"}
@@ -203,6 +211,7 @@ def _understand(found: Hearing, phrases: Material, heard: Heard, seen: Analysis,
         "answering": answering,
         "more": "tell_more" in seen.acts or "then" in low,
         "few": size <= FEW_WORDS,
+        "long": size >= LONG,
         "short": size <= SHORT,
         "teased": "insult" in seen.acts and is_playful(seen.text),
         "leaving": not asking and is_leaving(seen.text),
@@ -235,7 +244,7 @@ def _understand(found: Hearing, phrases: Material, heard: Heard, seen: Analysis,
     found.tags |= {tag for tag, holds in tags.items() if holds}
     found.roles = roles.having(
         called=called,
-        told=found.taken.told.core if found.taken else "",
+        told=found.taken.told.echo if found.taken and len(found.taken.told.echo.split()) <= SHORTLY else "",
         highlight=found.taken.highlight if found.taken else "",
         **(found.asked.values if found.asked else {}),
     )
@@ -268,6 +277,7 @@ def _question_tags(found: Hearing, phrases: Material, seen: Analysis, asking: st
     return {
         "question": True,
         "offer": _OFFER.match(asking) is not None,
+        "machine": any(not _MACHINES.isdisjoint(one.lower().split()) for one in found.options or ()),
         "are_you": polar and not modal and subject == "you" and asked is not None and asked.verb == "be",
         "told": found.moves == ("recall",)
         and (
@@ -359,6 +369,9 @@ def feeling_of(phrases: Material, seen: Analysis, sentence: str, tone: str) -> t
     """Return the strongest feeling with its sentence; sad feelings precede all others."""
     known = [one for one in seen.feelings.values() if one.name in phrases.feelings and one.score >= _least(one, tone)]
     known = [one for one in known if has_head(phrases, phrases.feelings[one.name], seen)]
+    known = [one for one in known if not re.search(rf'["“][^"”]*{re.escape(one.text.strip(".!?"))}', seen.text)]
+    if phrases.bank.brightness(seen.text) < BRIGHT:
+        known = [one for one in known if phrases.feelings[one.name].tone != "glad" or one.name not in BRIGHTEST]
     but = any(word.low == "but" for word in seen.tree.words)  # "you are sweet, but you don't listen"
     matches = [one for one in known if one.name in _SAD or not but]
     if not matches:

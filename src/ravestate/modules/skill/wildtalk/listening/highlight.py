@@ -20,6 +20,8 @@ from .echo import echo
 
 LONGEST = 8
 """The maximum number of words of a highlight."""
+SHORT = 5
+"""The number of letters below which an unknown word counts as a slip."""
 SUBTITLES = 1.6e9
 """The number of words behind the frequencies of `Lexicon`."""
 DULL = 7.5
@@ -32,18 +34,18 @@ KNOWN_LEAST = 5.0
 """The same for *the timer* and *my teeth*: such things are mostly mentioned in passing."""
 NUMBER = 3.0
 """The information of a number beside a noun, in nats above `DULL`: *fourteen years*."""
-LATER, SUBJECT, KNOWN = 1.25, 0.55, 0.4
-"""Factors: the last clause holds the point, a subject is mostly known already, and so is a word that was said before."""
+LATER, SUBJECT, BESIDE, KNOWN = 1.2, 0.55, 0.55, 0.4
+"""Factors: the last words hold the point; a subject is mostly known; a place, a time and a side clause are less than the news; a
+word that was said before is none."""
 
 _EMPTY = word_set(
     "thing things stuff lot lots bit kind sort way time times day days one ones something anything nothing everything"
-    " someone somebody anyone anybody everyone everybody nobody guy guys people today tomorrow yesterday tonight morning"
+    " someone somebody anyone anybody everyone everybody nobody guy guys people today tomorrow yesterday tonight morning weekend weekends"
     " afternoon evening night week weeks month months year years moment minute minutes hour hours monday tuesday wednesday"
     " thursday friday saturday sunday january february march april june july august september october november december"
     " easter christmas row mate bro dude dear robot bot buddy pal goodnight bye goodbye hello hi name names rest end part side place point case fact reason idea matter lol haha ok okay"
 )
 """Nouns that name nothing, or only a time."""
-_TIMES = word_set("monday tuesday wednesday thursday friday saturday sunday today yesterday tomorrow tonight")
 _LEFT = ("det", "amod", "compound", "nummod", "poss", "case", "nmod", "quantmod", "predet", "advmod")
 _DEFINITE = word_set("the my our your his her its their it's")
 _LAST = word_set("lol haha btw tho though lmao xd pls please again too")
@@ -51,10 +53,10 @@ _LAST = word_set("lol haha btw tho though lmao xd pls please again too")
 _PLACES = ("GPE", "LOC", "FAC", "EVENT", "PRODUCT", "WORK_OF_ART", "NORP")
 """Kinds of names that may be a highlight."""
 _PRONOUNS = word_set("mine yours his hers ours theirs")
-_DROPPED = word_set("some any no another such what which whatever every each")
+_DROPPED = word_set("some any such whatever")
 """Determiners that do not stand well at the beginning of an exclamation."""
-_VAGUE = word_set("about of for as like than with")
-"""Prepositions that a highlight does not begin with."""
+_PLACING = word_set("in on under behind off onto into over without inside across around through between among outside")
+"""Prepositions with which a highlight may begin."""
 _DENYING = word_set("not n't never no nobody hardly without")
 _IMAGINING = word_set("if unless whether would could might should")
 
@@ -90,11 +92,13 @@ def highlight_in(seen: Analysis, words: Sequence[Word], known: str = "", *, aske
         if not _names(tree, noun, places) or not (asked or _is_asserted(tree, noun)):
             continue
         for phrase in map(_without_tail, _phrases(tree, noun, inside)):
+            if lexicon is not None and any(lexicon.rare(word.low) and len(word.low) < SHORT for word in phrase):
+                continue  # a slip of the pen
             if not 0 < len(phrase) <= LONGEST or any(word.pos == "PUNCT" and word.text not in "-’'" for word in phrase):
                 continue
             told = _information(lexicon, phrase, before)
             told *= 1 + (LATER - 1) * place / len(words)
-            told *= SUBJECT if noun.dep in SUBJECTS else 1.0
+            told *= _weight(tree, noun)
             text = _written(lexicon, echo(tree, phrase))
             plainly = phrase[0].low in _DEFINITE and not any(word.pos in ("ADJ", "NUM", "ADP") for word in phrase)
             if told >= (KNOWN_LEAST if plainly else LEAST) and text:
@@ -107,6 +111,15 @@ def _written(lexicon: Lexicon | None, text: str) -> str:
     return (
         text if lexicon is None else " ".join(lexicon.name(word) if word.islower() else word for word in text.split())
     )
+
+
+def _weight(tree: Tree, noun: Word) -> float:
+    """Return the share of its information that a noun has by its place in the sentence."""
+    while noun.dep == "conj" and tree.head(noun).pos in ("NOUN", "PROPN"):
+        noun = tree.head(noun)
+    share = SUBJECT if noun.dep in SUBJECTS and tree.head(noun).lemma != "be" else 1.0
+    share *= BESIDE if noun.dep == "pobj" and tree.head(tree.head(noun)).pos not in ("NOUN", "PROPN") else 1.0
+    return share * (BESIDE if any(word.dep in ("relcl", "advcl", "acl") for word in tree.ancestors(noun)) else 1.0)
 
 
 def _without_tail(phrase: list[Word]) -> list[Word]:
@@ -124,9 +137,11 @@ def _names(tree: Tree, noun: Word, places: set[int]) -> bool:
         return False
     if noun.dep in ("compound", "npadvmod", "intj", "nmod", "vocative"):
         return False
-    if noun.pos == "PROPN" and noun.index not in places:
+    if noun.pos == "PROPN" and noun.index not in places and not noun.text.islower():
         return False  # a person's name alone is no highlight
-    return not {word.low for word in tree.children(noun)} & {"no", "what", "which"}
+    left = {word.low for word in tree.children(noun)}
+    gerund = noun.low.endswith("ing") and not left.isdisjoint(("its", "it's"))  # "its raining" as people type it
+    return not gerund and left.isdisjoint(("no", "what", "which"))
 
 
 def _is_asserted(tree: Tree, noun: Word) -> bool:
@@ -151,8 +166,13 @@ def _phrases(tree: Tree, noun: Word, inside: set[int]) -> Iterator[list[Word]]:
     if [word.index for word in core] != list(range(core[0].index, noun.index + 1)) or core[0].low in _PRONOUNS:
         return
     head = tree.head(noun)
-    if noun.dep == "pobj" and head.index == core[0].index - 1 and head.low not in _VAGUE and head.index in inside:
+    if noun.dep == "pobj" and head.index == core[0].index - 1 and head.low in _PLACING and head.index in inside:
         core = [head, *core]
+    elif noun.dep == "pobj" and noun.tag == "NN" and core[0] is noun:
+        return  # "train" of "by train"
+    after = next((word for word in tree.words if word.index == noun.index + 1), None)
+    if after is not None and after.pos in ("NOUN", "PROPN", "PART") and after.start == noun.end + 1:
+        return  # "the conductors" of "the conductors glasses"
     yield core
     grown = list(core)
     for _ in range(2):
@@ -169,7 +189,7 @@ def _phrases(tree: Tree, noun: Word, inside: set[int]) -> Iterator[list[Word]]:
                 return
             more = tree.subtree(clause)
         nouns = [word for word in more if word.pos in ("NOUN", "PROPN", "PRON", "NUM")]
-        if len(grown) + len(more) > LONGEST or (more[0].pos == "ADP" and (not nouns or nouns[-1].low in _TIMES)):
+        if len(grown) + len(more) > LONGEST or (more[0].pos == "ADP" and (not nouns or nouns[-1].low in _EMPTY)):
             return
         if [word.index for word in more] != list(range(grown[-1].index + 1, grown[-1].index + 1 + len(more))):
             return

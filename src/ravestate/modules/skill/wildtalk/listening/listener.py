@@ -49,10 +49,12 @@ class Answer:
 
     text: str
     state: State
+    weak: bool = False
+    """Whether the answer fits nearly every utterance."""
 
     def opened(self, words: str, before: str) -> Answer:
         """Return the answer with words before it. `before`: the user's whole utterance."""
-        text = f"{words} {self.text}"
+        text = f"{words} {self.text}".strip()
         return Answer(text, replace(self.state, said=(*self.state.said[:-1], text), before=before))
 
 
@@ -234,7 +236,7 @@ class Listener:
             after = replace(after, asked=source.asked or after.asked)
             if source.stance:
                 after = replace(after, stances={**state.stances, roles.values["thing"].lower(): source.stance})
-            return _said(line, roles, after)
+            return replace(_said(line, roles, after), weak=source.weak)
         return None
 
     def _threaded(self, state: State) -> State:
@@ -283,7 +285,10 @@ class Listener:
                 mine = roles.being is None and statement.subject_person == "I"
                 past = {"past"} & hearing.tags
                 groups += [*(["self"] if mine else []), "future" if statement.plan else "past" if past else "present"]
-            yield _Source(moment.lines(*groups, "say", "again"), moment)
+            found = moment.lines(*groups, "say", "again")
+            if "long" in hearing.tags and moment.name in self._phrases.feelings:  # the user has just said what it is
+                yield _Source([[line for line in lines if not line.asks] for lines in found], moment)
+            yield _Source(found, moment)
 
     def _bank(self, hearing: Hearing, state: State, chance: random.Random) -> Iterator[_Source]:
         """Yield the entries of the bank that suit the utterance, the most suitable first."""

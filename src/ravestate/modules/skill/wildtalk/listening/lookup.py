@@ -54,11 +54,12 @@ def near_in(
     bare = asking and not about(phrases, seen.tree, words_of(seen.tree, asking))  # "how do I start?"
     kind, persons = kind_of(asking) if asking else "", persons_in(seen.normal.text)
     grave = is_grave(seen.normal.text)
+    dark = phrases.bank.tone(seen.text) == "sad"
     ranked: list[Found] = []
     for one in phrases.bank.similar(texts, seen.text, roughly=roughly):
         tone = one.moment.tone
         crossed = (tone == "glad" and mood in DARK) or (tone in DARK and mood == "glad")
-        crossed = crossed or (grave and tone not in DARK and one.score < CLOSE)
+        crossed = crossed or ((grave or dark) and tone not in DARK and one.score < CLOSE)
         examples = one.moment.examples
         crossed = crossed or (one.fit < 1 and kind != "" and kind not in map(kind_of, examples))
         crossed = crossed or bool(bare and one.score < CLOSE and len(asking.split()) <= BRIEFLY)

@@ -8,7 +8,7 @@ from dataclasses import dataclass, replace
 
 from ravestate.modules.meta.nlp.analysis import Analysis
 
-from .echo import Told, told_in, words_of
+from .echo import Told, is_astonished, told_in, words_of
 from .highlight import highlight_in
 from .moment import Line, Moment
 from .state import State
@@ -27,6 +27,8 @@ class Taken:
     """The statement with the highlight; without one, the last statement."""
     highlight: str = ""
     """The phrase that says most, from the agent's view; empty if none stands out."""
+    information: float = 0.0
+    """The information of the highlight, in nats."""
 
 
 def taken_from(seen: Analysis, living: frozenset[str], known: str) -> Taken | None:
@@ -37,30 +39,32 @@ def taken_from(seen: Analysis, living: frozenset[str], known: str) -> Taken | No
         living: The lemmas of nouns for living beings.
         known: The user's words before; they are no news.
     """
-    statements = [one for one in seen.sentences if not one.rstrip().endswith("?")]
+    statements = [one for one in seen.sentences if not one.rstrip().endswith("?") or is_astonished(seen, one)]
     told = sorted(told_in(seen, living), key=lambda one: one.start)
     words = {word.index: word for one in statements for word in words_of(seen.tree, one)}
     best = highlight_in(seen, [words[place] for place in sorted(words)], known)
     if best is None:
         return Taken(told[-1]) if told else None
     near = next((one for one in reversed(told) if one.start <= best.start), told[0] if told else Told("", "piece"))
-    return Taken(near, best.text)
+    return Taken(near, best.text, best.information)
 
 
-OFTEN = 0.4
-"""The share of questions among the replies to a statement."""
-ASKING = {"sad": 0.2, "angry": 0.35, "tired": 0.2}
-"""The same in a mood in which questions are a burden."""
-UNREPEATED = 12
+ALONE, REMARKED = 0.5, 0.75
+"""The share of highlights that stand alone, and the share with or without a remark; a question follows the others."""
+QUIETLY = 0.8
+"""The share of remarks among the replies without a highlight: each question would be one of very few."""
+SURPRISING = 11.0
+"""The least information of a highlight, in nats, at which the listener is surprised."""
+TOLD = 5.0
+"""The least information of a highlight in a sad mood. Somebody who is sad needs an ear, and no list of things."""
+UNREPEATED = 6
 """The number of answers for which a question or a remark is not said again."""
-ECHOED = 4
-"""The least number of answers between two echoes of a whole statement."""
 
 
 def replies(
     taken: Taken, lines: Mapping[str, Moment], mood: str, state: State, chance: random.Random
 ) -> Iterator[Groups]:
-    """Yield groups of replies: a question or a remark, then the other.
+    """Yield groups of replies, the preferred first.
 
     Args:
         taken: The statement and its highlight.
@@ -71,13 +75,22 @@ def replies(
     """
     names = _names(taken.told, mood)
     front = _front(taken, lines, mood, state, chance)
-    kinds = ["questions", "remarks" if taken.highlight else "plainly"]
-    if chance.random() >= ASKING.get(mood, OFTEN):
-        kinds.reverse()
-    for kind in kinds:
-        yield _framed(lines[kind].lines(*names), front, state)
-    if front.text:  # all lines were said lately
+    drawn = chance.random()
+    if front is None:
+        kinds = ["plainly", "questions"] if drawn < QUIETLY else ["questions", "plainly"]
+        for kind in kinds:
+            yield _framed(lines[kind].lines(*names), NOTHING, state)
+        return
+    surprised = not mood and taken.information >= SURPRISING and taken.told.tense in ("past", "now")
+    if drawn < ALONE:
         yield [[front]]
+    if drawn < REMARKED:
+        yield _framed(lines["surprised"].lines("say") if surprised else lines["remarks"].lines(*names), front, state)
+    yield _framed(lines["questions"].lines(*names), front, state)
+    yield [[front]]
+
+
+NOTHING = Line("", frozenset())
 
 
 def _names(told: Told, mood: str) -> list[str]:
@@ -89,18 +102,13 @@ def _names(told: Told, mood: str) -> list[str]:
     return [f"{told.subject} {told.tense}", told.tense, told.subject, "say"]
 
 
-def _front(taken: Taken, lines: Mapping[str, Moment], mood: str, state: State, chance: random.Random) -> Line:
-    """Return a frame with the highlight or, now and then, with a short statement; an empty line if there is neither."""
-    told = taken.told
-    lately = any("{told}" in text.lower() for text in state.recent[-ECHOED:])
-    if told.subject == "yours":
-        return Line("", frozenset())
-    if taken.highlight:
-        frames = lines["frames"].lines(mood, told.tense, "say")[0]
-    elif told.core and not lately:
-        frames = lines["echoes"].lines(mood, "say")[0]
-    else:
-        return Line("", frozenset())
+def _front(taken: Taken, lines: Mapping[str, Moment], mood: str, state: State, chance: random.Random) -> Line | None:
+    """Return a frame with the highlight; None if there is none, or if it does not suit."""
+    low = mood in ("sad", "quiet") and taken.information < TOLD
+    if not taken.highlight or low or taken.told.subject == "yours":
+        return None
+    surprising = ["surprising"] if taken.information >= SURPRISING and not mood else []
+    frames = lines["frames"].lines(mood, *surprising, taken.told.tense, "say")[0]
     fresh = [line for line in frames if not any(text.startswith(line.text) for text in state.recent[-3:])]
     return chance.choice(fresh or frames)
 

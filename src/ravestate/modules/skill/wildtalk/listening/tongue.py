@@ -1,4 +1,4 @@
-"""Utterances that are not English: other languages, nonsense, numbers."""
+"""Utterances that are not English: other languages and numbers."""
 
 from __future__ import annotations
 
@@ -7,10 +7,6 @@ import unicodedata
 from collections.abc import Mapping
 
 _WORD = re.compile(r"[^\W\d_]+")
-_MASHED = re.compile(
-    r"(.)\1{3}|[^aeiouyäöüáéíóúàèêâ]{6}|(?:qwe|wer|asd|sdf|dfg|fgh|ghj|hjk|jkl|zxc|xcv|cvb|yxc)\w*", re.IGNORECASE
-)
-_NO_VOWEL = re.compile(r"[^aeiouy]{4,}")
 
 
 def tongue_of(text: str, tongues: Mapping[str, frozenset[str]]) -> str:
@@ -30,19 +26,6 @@ def tongue_of(text: str, tongues: Mapping[str, frozenset[str]]) -> str:
     best = max(counts, key=lambda name: counts[name], default="")
     needed = 1 if len(words) == 1 and len(words[0]) > 3 else max(2, 0.5 * len(words))
     return best if best and counts[best] >= needed else ""
-
-
-def is_nonsense(text: str) -> bool:
-    """Return whether a text looks like a keyboard that was hit at random.
-
-    Example:
-        >>> is_nonsense("asdfgh jkl"), is_nonsense("hello there")
-        (True, False)
-    """
-    words = _WORD.findall(text)
-    letters = sum(map(len, words))
-    mashed = [word for word in words if len(word) > 3 and (_MASHED.search(word) or _NO_VOWEL.fullmatch(word.lower()))]
-    return bool(words) and sum(map(len, mashed)) > letters / 2
 
 
 def is_number(text: str) -> bool:
