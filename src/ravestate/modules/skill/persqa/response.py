@@ -22,6 +22,8 @@ from .understanding import EVERYTHING, Meaning, is_idle
 from .wording import among, clauses, joined, learned, memorable, same, say, stating, without
 
 T = TypeVar("T")
+BRIEF = 9
+"""The maximum number of words of an utterance that a stock reply to its fact answers. Longer ones have more to say."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -112,6 +114,8 @@ def tells_more(answer: Intent, meaning: Meaning, seen: nlp.Analysis) -> bool:
     told = [fact.topic for fact in meaning.facts]
     if not answer.name.startswith("learned") or meaning.topic in told:
         return False
+    if sum(word.pos != "PUNCT" for word in seen.tree.words) > BRIEF:
+        return True
     people = any(TOPICS[topic].kind == "people" for topic in told)
     rest = [one for one in seen.statements if one.verb not in WORDS["stating"]]
     return (people and bool(rest)) or (answer.name == "learned" and len(seen.statements) > 1)
