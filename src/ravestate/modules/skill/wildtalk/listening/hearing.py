@@ -205,7 +205,7 @@ def _understand(found: Hearing, phrases: Material, heard: Heard, seen: Analysis,
         and not (asking or is_request(seen) or feeling or found.meanings or answer.unsure)
         and not (alike and (size > SHORT or nearest.score >= CLOSE)),
         "dark": dark,
-        "grave": is_grave(seen.normal.text),
+        "grave": is_grave(seen.normal.text) and (size <= SHORT * 2 or found.tone == "sad"),
         "pending": pending is not None,
         "closed": pending is not None and pending.closed,
         "answering": answering,

@@ -130,6 +130,8 @@ def _without_tail(phrase: list[Word]) -> list[Word]:
 
 def _names(tree: Tree, noun: Word, places: set[int]) -> bool:
     """Return whether a word can be the noun of a highlight: it names something. `places`: the words of other names."""
+    if noun.pos == "ADJ" and noun.dep in ("acomp", "oprd"):
+        return bool(tree.children(noun, "advmod"))  # "faintly pink"
     if noun.pos not in ("NOUN", "PROPN") or len(noun.low) < 3:
         return False
     counted = any(word.low not in ("one", "1") for word in tree.children(noun, "nummod"))

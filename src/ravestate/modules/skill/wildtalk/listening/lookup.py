@@ -29,7 +29,7 @@ LONG, LONGER = 10, 0.75
 judged replies to such utterances, half were bad where the estimate was 50 %."""
 CROSSED = 0.5
 """The share of its probability that an entry loses if its mood, its kind of question or its persons do not suit."""
-DARKLY = 0.3
+DARKLY = 0.5
 """The least probability with which a sad entry of the bank makes an utterance dark."""
 LEADING = 0.1
 """The advantage of an entry with follow-ups: after its reply, the user's next words are understood better."""

@@ -20,7 +20,7 @@ from .state import LASTING
 AGREEING = frozenset(("are", "were", "have", "do"))
 MOMENTS = ("about_the_talk", "advice", "everyday", "grown", "young", "questions", "life", "reactions", "moments")
 """The files of situations in a talk. Each situation names the moves for which it may answer."""
-_NOT_GROUPS = frozenset(("examples", "nouns", "verbs", "weight", "tone", "lasts", "heads", "moves", "least", "after"))
+_NOT_GROUPS = frozenset(("examples", "nouns", "verbs", "tone", "lasts", "heads", "moves", "least", "after"))
 
 
 @dataclass(frozen=True, slots=True)
@@ -98,7 +98,6 @@ def _moments(name: str) -> dict[str, Moment]:
             tuple(value.get("examples", ())),
             frozenset(value.get("nouns", ())),
             frozenset(value.get("verbs", ())),
-            float(value.get("weight", 0.0)),
             frozenset(value.get("moves", ())),
             value.get("after", ""),
             float(value.get("least", 0.0)),

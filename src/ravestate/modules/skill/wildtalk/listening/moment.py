@@ -42,8 +42,6 @@ class Moment:
     nouns: frozenset[str] = frozenset()
     verbs: frozenset[str] = frozenset()
     """The nouns and the verbs that are typical of the situation."""
-    weight: float = 0.0
-    """The importance of a statement of this kind (told.yaml); 0 for the importance of its tense."""
     moves: frozenset[str] = frozenset()
     """The moves of a listener (language/moves.py) for which its phrases fit."""
     after: str = ""

@@ -82,11 +82,12 @@ def replies(
             yield _framed(lines[kind].lines(*names), NOTHING, state)
         return
     surprised = not mood and taken.information >= SURPRISING and taken.told.tense in ("past", "now")
+    remarks = lines["surprised"].lines("say") if surprised else lines["remarks"].lines(*names)
     if drawn < ALONE:
         yield [[front]]
-    if drawn < REMARKED:
-        yield _framed(lines["surprised"].lines("say") if surprised else lines["remarks"].lines(*names), front, state)
-    yield _framed(lines["questions"].lines(*names), front, state)
+    if drawn >= REMARKED:
+        yield _framed(lines["questions"].lines(*names), front, state)
+    yield _framed(remarks, front, state)
     yield [[front]]
 
 
