@@ -14,7 +14,6 @@ from .encoder import Encoder
 from .heap import note_load
 from .matcher import shared_encoder
 from .normal import plain
-from .rows import Rows
 from .shape import likeness, opens_question, shape
 
 if TYPE_CHECKING:
@@ -74,12 +73,6 @@ class Nearest:
         """Whether `load` has succeeded."""
         return self._learnt is not None
 
-    @property
-    def vectors(self) -> Rows:
-        """The vectors of the examples that are searched, after `load`."""
-        assert self._learnt is not None, "load the index first"
-        return self._learnt.vectors
-
     def similarities(self, text: str, places: Sequence[int]) -> list[float]:
         """Return the cosine similarity of a text to the examples at `places`. Before `load`, each similarity is 0.0."""
         return [0.0] * len(places) if self._learnt is None else self._learnt.similarities(plain(text), places)
@@ -106,10 +99,6 @@ class _Learnt:
         self._encoder = encoder
         self._examples = examples
         self._known = _Group(examples[:searched], encoder)
-
-    @property
-    def vectors(self) -> Rows:
-        return self._known.meanings
 
     def similarities(self, text: str, places: Sequence[int]) -> list[float]:
         """Return the cosine similarities of a plain text to searched examples."""

@@ -16,7 +16,7 @@ def told(text: str) -> Told | None:
     ("text", "echo", "subject", "tense"),
     [
         ("my ferret bit me", "your ferret bit you", "theirs", "past"),
-        ("I was at the fair with our aunt", "you were at the fair with your aunt", "mine", "past"),
+        ("I was at the fair with our aunt", "you were at the fair with your aunt", "mine", "now"),
         ("so i'm a locksmith now", "you're a locksmith now", "mine", "now"),
         ("well the roof is leaking again", "the roof is leaking again", "thing", "now"),
         ("I am going to visit him on Monday", "you are going to visit him on Monday", "mine", "plan"),

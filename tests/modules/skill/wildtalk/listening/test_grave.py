@@ -7,9 +7,9 @@ from collections.abc import Callable
 import pytest
 
 from ravestate.modules.skill.wildtalk.listening import Heard
-from ravestate.modules.skill.wildtalk.listening.bank import DARK
 from ravestate.modules.skill.wildtalk.listening.grave import is_crisis, is_grave
 from ravestate.modules.skill.wildtalk.listening.material import material
+from ravestate.modules.skill.wildtalk.listening.tones import DARK
 
 from .conftest import Talk, seen
 

@@ -305,7 +305,8 @@ def test_a_question_is_answered_by_its_kind_and_its_area_of_life(
     assert asked is not None
     assert (asked.kind, "" if asked.area is None else asked.area.name) == (kind, area)
     heard = hear(material(), Heard(text, seen(text)), State())
-    lines = [line for group in asked.lines(material(), "", text) for line in group]
+    lines = [line for group in asked.lines(material(), "", heard.asking) for line in group]
+    lines += [line for one in heard.near for group in one.moment.lines("say") for line in group]
     known = [line.text for line in lines if line.roles <= heard.roles.values.keys()]
     assert begin(2).say(text) in map(heard.roles.fill, known)
 

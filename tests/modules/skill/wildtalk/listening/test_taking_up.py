@@ -15,7 +15,7 @@ from .conftest import seen
 
 TENSES = ("past", "now", "plan", "might", "once", "not")
 PERSONS = ("mine", "theirs", "thing", "yours", "piece")
-MOODS = ("", "sad", "angry", "glad", "tired", "quiet")
+MOODS = ("", "sad", "angry", "glad", "funny", "tired", "quiet")
 
 
 def taken(text: str, known: str = "") -> Taken | None:

@@ -37,7 +37,7 @@ ALIKE: Mapping[str, tuple[str, ...]] = {
 """The classes whose answers in an area serve a kind, the best first. By default, only its own."""
 OPEN = word_set("recommend should worth favourite would_you fact choose predict permit explain")
 """Kinds that are a choice if options are named."""
-EXACT = word_set("fact why choose measure would_you")
+EXACT = word_set("fact why choose measure would_you about_you")
 """Kinds whose answers suit few other questions of the same area."""
 OWN = word_set("about_you would_you favourite")
 """Kinds that ask about the agent."""
@@ -228,7 +228,8 @@ def about(phrases: Material, tree: Tree, words: Sequence[Word]) -> str:
 
 def _named(seen: Analysis, words: Sequence[Word]) -> str:
     """Return the phrase of a question that says most; empty if none stands out."""
-    found = highlight_in(seen, words, asked=True)
+    nouns = [word for word in words if word.pos != "ADJ" or word.dep == "amod"]
+    found = highlight_in(seen, nouns, asked=True)
     return "" if found is None else found.text
 
 

@@ -21,20 +21,18 @@ from ravestate.language.reranker import Reranker
 
 from .moment import Line, Moment, roles_in
 from .suitability import Evidence
-from .tones import Tones
 
 LEAST = 0.74
 """The least similarity at which an entry is looked at more closely."""
 CLOSE, DOUBTFUL, PROBABLE = 0.93, 0.25, 0.47
 """An entry with the similarity `CLOSE` and the probability `DOUBTFUL`, or more, gets at least the probability `PROBABLE`:
 more than half of such entries suit. Their other sentences may be far from the utterance, which lowers the estimate."""
-ANSWER, EXACTLY = -9.1, -8.6
+ANSWER, EXACTLY = -9.5, -8.6
 """The least scores (logits) of an answer: of advice, which is right for many questions, and of what must be exact. An answer to
 another question from the same area of life scores -10 to -11."""
 MOST = 5
 """The maximum number of entries that are looked at."""
 TONES = ("sad", "angry", "glad", "tired")
-DARK = ("sad", "angry", "tired")
 DEEPEST = 3
 """The greatest number of marks before a follow-up."""
 REST = "*"
@@ -74,7 +72,6 @@ class Bank:
             examples += own
         self.index = Nearest(examples, searched=len(self._of))
         self._judge = Reranker()
-        self._tones: Tones | None = None
         self._ranked = lru_cache(64)(self._rank)  # several rules ask about the same utterance
 
     def load(self) -> None:
@@ -85,20 +82,11 @@ class Bank:
         """
         self._judge.load()
         self.index.load()
-        examples = [text for one in self.moments for text in one.examples]
-        self._tones = Tones(examples, [self.moments[at].tone for at in self._of], self.index.vectors)
-
-    def tone(self, text: str) -> str:
-        """Return the tone of a text; empty if none is sure, and before `load`."""
-        return "" if self._tones is None else self._tones.tone(text)
-
-    def brightness(self, text: str) -> float:
-        """Return by how much gladness exceeds the dark tones of a text; 0 before `load`."""
-        return 0.0 if self._tones is None else self._tones.brightness(text)
 
     def answering(self, question: str, lines: Sequence[Line], least: float = ANSWER) -> list[Line]:
-        """Return the lines that may answer a question, the likeliest first. Before `load`, return all, in their order."""
-        if not self.index.loaded or not lines:
+        """Return the lines that may answer a question, the likeliest first. Before `load`, or without
+        a question, return all, in their order."""
+        if not self.index.loaded or not lines or not question:
             return list(lines)
         scores = self._judge.score_pairs([(question, line.text) for line in lines]).tolist()
         ranked = sorted(zip(scores, lines, strict=True), key=lambda one: -one[0])

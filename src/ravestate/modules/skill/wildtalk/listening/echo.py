@@ -55,6 +55,7 @@ _WISHING = word_set("want plan hope intend wish like")
 """Verbs that make a plan of the verb that they govern."""
 _MOVING = word_set("go come move fly travel drive leave arrive visit meet start")
 """Verbs whose progressive form tells a plan: *we are flying to Rome*."""
+_LASTING = word_set("be have know like love hate want need live belong mean seem look feel")
 _USUALLY = word_set("always usually often every sometimes never")
 """Words of a habit."""
 _POLITE = word_set("think know believe say tell guess suppose reckon")
@@ -70,7 +71,7 @@ class Told:
     subject: str = "thing"
     """``mine``, ``theirs`` (somebody else), ``thing``, ``yours`` (the agent), or ``piece`` for a statement without a verb."""
     tense: str = "now"
-    """``past``, ``now``, ``plan``, ``might`` for what is only imagined, ``once`` for a habit of the past, or ``not`` if denied."""
+    """``past`` for an event, ``now`` also for a state of the past, ``plan``, ``might`` for what is only imagined, ``once`` for a habit of the past, or ``not`` if denied."""
     start: int = 0
     """The number of its first word in the utterance."""
 
@@ -231,7 +232,10 @@ def _tense(tree: Tree, verb: Word, subjects: Sequence[Word]) -> str:
         return "plan"
     if helpers & {"will", "'ll", "shall"}:
         return "plan"
-    return "past" if verb.tag in ("VBD", "VBN") or helpers & {"did", "had", "was", "were"} else "now"
+    past = verb.tag in ("VBD", "VBN") or not helpers.isdisjoint(("did", "had", "was", "were"))
+    return (
+        "past" if past and verb.lemma not in _LASTING else "now"
+    )  # a state is no event, after which something happens
 
 
 def _is_cut(tree: Tree, verb: Word) -> bool:

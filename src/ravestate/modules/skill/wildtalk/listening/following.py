@@ -14,9 +14,10 @@ from ravestate.language.normal import plain
 from ravestate.modules.meta.nlp.analysis import Analysis
 
 from .asking import SHORT
-from .bank import DARK, REST, Bank, Found
+from .bank import REST, Bank, Found
 from .moment import Moment
 from .state import State
+from .tones import DARK
 
 LEAST, CLEAR, SURE, EQUAL = 0.68, 0.75, 0.8, 0.93
 """The least scores of a follow-up: to answer at all, to beat a near entry of the open bank, to beat a farewell, and to

@@ -30,6 +30,7 @@ from .moment import Moment
 from .roles import Roles, has_verb, is_request, roles_of, turned
 from .state import LASTING, State
 from .taking_up import Taken, taken_from
+from .tones import may_be_dark, tone_of
 from .tongue import is_number, tongue_of
 from .turns import is_leaving, turns_in
 
@@ -51,8 +52,6 @@ CLOUDED = 0.85
 """The least confidence at which a sad moment ends a glad tone."""
 ASKED = 0.8
 """The least confidence at which the agent does what the user requests."""
-BRIGHT, BRIGHTEST = 0.0, ("joy",)
-"""The least brightness of an utterance with one of these feelings: *that's Portugal gone!* is no good news."""
 FEW = 0.75
 """The confidence that a short sentence needs."""
 SHORTLY = 7
@@ -173,7 +172,7 @@ def _understand(found: Hearing, phrases: Material, heard: Heard, seen: Analysis,
     dark = is_dark(seen, found.near) or found.sad
     found.tone = "sad" if dark else _tone(phrases, seen, found.moves, feeling)
     grieving = state.tone == "sad" and (state.turns > LASTING or not _SAD.isdisjoint(seen.feelings))
-    quiet = state.tone == "sad" and found.tone in ("", "glad")
+    quiet = state.tone == "sad" and found.tone in ("", "glad", "funny")
     found.mood = "quiet" if quiet and not grieving else "sad" if grieving else found.tone
     nearest = found.near[0] if found.near else Found(0.0, 0.0, Moment("", {}), "")
     found.follow_up = follow_up_in(
@@ -254,7 +253,7 @@ def _tone(phrases: Material, seen: Analysis, moves: Sequence[str], feeling: Mome
     """Return the tone of an utterance that is not grave."""
     if feeling is not None and feeling.tone:
         return feeling.tone
-    return phrases.bank.tone(seen.text) or ("glad" if moves == ("rejoice",) else "")
+    return tone_of(seen.text) or ("glad" if moves == ("rejoice",) and not may_be_dark(seen.text) else "")
 
 
 def likely(phrases: Material, seen: Analysis) -> tuple[str, ...]:
@@ -370,8 +369,8 @@ def feeling_of(phrases: Material, seen: Analysis, sentence: str, tone: str) -> t
     known = [one for one in seen.feelings.values() if one.name in phrases.feelings and one.score >= _least(one, tone)]
     known = [one for one in known if has_head(phrases, phrases.feelings[one.name], seen)]
     known = [one for one in known if not re.search(rf'["“][^"”]*{re.escape(one.text.strip(".!?"))}', seen.text)]
-    if phrases.bank.brightness(seen.text) < BRIGHT:
-        known = [one for one in known if phrases.feelings[one.name].tone != "glad" or one.name not in BRIGHTEST]
+    if may_be_dark(seen.text):  # "that's Portugal gone!" is no good news
+        known = [one for one in known if phrases.feelings[one.name].tone != "glad"]
     but = any(word.low == "but" for word in seen.tree.words)  # "you are sweet, but you don't listen"
     matches = [one for one in known if one.name in _SAD or not but]
     if not matches:

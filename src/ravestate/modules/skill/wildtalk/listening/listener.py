@@ -25,6 +25,7 @@ from .repair import may_repair, repair_in
 from .roles import Roles, has_verb, roles_of
 from .state import LASTING, Being, Overheard, Pending, State
 from .taking_up import replies
+from .tones import load_tones
 from .turns import is_cry, is_leaving, is_news
 from .wishes import Wish, kinds_in, wish_in
 
@@ -88,6 +89,7 @@ class Listener:
         for matcher in self._phrases.matchers:
             matcher.load()
         self._phrases.bank.load()
+        load_tones()
 
     def claims(self, heard: Heard, state: State | None = None) -> bool:
         """Return whether an utterance is a move in the talk that other modules would take for a question or a fact.
@@ -225,6 +227,7 @@ class Listener:
                 continue
             moment = source.moment
             tone = hearing.tone if moment is None else moment.tone or "sad" * hearing.sad
+            tone = "" if tone == "funny" else tone  # a funny story leaves no tone behind
             after = state.toned(tone, LASTING if moment is None else moment.lasts)
             after = replace(
                 after,
@@ -311,7 +314,9 @@ class Listener:
         asked = hearing.asked
         if asked is not None:
             about = asked.kind, "" if asked.area is None else asked.area.name
-            yield _Source(asked.lines(self._phrases, state.tone, hearing.asking), asked=about)
+            yield _Source(
+                asked.lines(self._phrases, state.tone, "" if "again" in hearing.tags else hearing.asking), asked=about
+            )
 
     def _echo(self, hearing: Hearing, state: State, chance: random.Random) -> Iterator[_Source]:
         """Yield replies that take up the user's statement, with its highlight."""

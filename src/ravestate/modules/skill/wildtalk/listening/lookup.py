@@ -11,12 +11,13 @@ from ravestate.modules.meta.nlp.analysis import Analysis
 
 from .asked import about
 from .asking import kind_of
-from .bank import CLOSE, DARK, Found
+from .bank import CLOSE, Found
 from .echo import words_of
 from .grave import is_grave
 from .material import Material
 from .moment import Moment
 from .state import State
+from .tones import DARK, tone_of
 
 BRIEFLY = 5
 """The maximum number of words of a question that names nothing."""
@@ -54,7 +55,7 @@ def near_in(
     bare = asking and not about(phrases, seen.tree, words_of(seen.tree, asking))  # "how do I start?"
     kind, persons = kind_of(asking) if asking else "", persons_in(seen.normal.text)
     grave = is_grave(seen.normal.text)
-    dark = phrases.bank.tone(seen.text) == "sad"
+    dark = tone_of(seen.text) == "sad"
     ranked: list[Found] = []
     for one in phrases.bank.similar(texts, seen.text, roughly=roughly):
         tone = one.moment.tone
@@ -70,8 +71,12 @@ def near_in(
 
 
 def is_dark(seen: Analysis, near: Sequence[Found]) -> bool:
-    """Return whether an utterance is grave, by its words or by a sad entry of the bank that it resembles."""
-    return is_grave(seen.normal.text) or any(one.moment.tone == "sad" and one.fit >= DARKLY for one in near)
+    """Return whether an utterance is grave or sad, by its words, its tone, or a sad entry of the bank that it resembles."""
+    return (
+        is_grave(seen.normal.text)
+        or tone_of(seen.text) == "sad"
+        or any(one.moment.tone == "sad" and one.fit >= DARKLY for one in near)
+    )
 
 
 def persons_in(text: str) -> tuple[bool, bool]:

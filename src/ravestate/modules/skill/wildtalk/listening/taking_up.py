@@ -53,10 +53,8 @@ ALONE, REMARKED = 0.5, 0.75
 """The share of highlights that stand alone, and the share with or without a remark; a question follows the others."""
 QUIETLY = 0.8
 """The share of remarks among the replies without a highlight: each question would be one of very few."""
-SURPRISING = 11.0
-"""The least information of a highlight, in nats, at which the listener is surprised."""
 TOLD = 5.0
-"""The least information of a highlight in a sad mood. Somebody who is sad needs an ear, and no list of things."""
+"""The least information of a highlight between sad utterances. Somebody who is sad needs an ear, and no list of things."""
 UNREPEATED = 6
 """The number of answers for which a question or a remark is not said again."""
 
@@ -69,7 +67,7 @@ def replies(
     Args:
         taken: The statement and its highlight.
         lines: The authored lines of taking_up.yaml.
-        mood: ``sad``, ``angry``, ``glad``, ``tired``, ``quiet``, or empty.
+        mood: ``sad``, ``angry``, ``glad``, ``funny``, ``tired``, ``quiet``, or empty.
         state: The state of the talk.
         chance: The source of random choices.
     """
@@ -81,13 +79,11 @@ def replies(
         for kind in kinds:
             yield _framed(lines[kind].lines(*names), NOTHING, state)
         return
-    surprised = not mood and taken.information >= SURPRISING and taken.told.tense in ("past", "now")
-    remarks = lines["surprised"].lines("say") if surprised else lines["remarks"].lines(*names)
     if drawn < ALONE:
         yield [[front]]
     if drawn >= REMARKED:
         yield _framed(lines["questions"].lines(*names), front, state)
-    yield _framed(remarks, front, state)
+    yield _framed(lines["remarks"].lines(*names), front, state)
     yield [[front]]
 
 
@@ -105,11 +101,10 @@ def _names(told: Told, mood: str) -> list[str]:
 
 def _front(taken: Taken, lines: Mapping[str, Moment], mood: str, state: State, chance: random.Random) -> Line | None:
     """Return a frame with the highlight; None if there is none, or if it does not suit."""
-    low = mood in ("sad", "quiet") and taken.information < TOLD
+    low = mood == "quiet" and taken.information < TOLD
     if not taken.highlight or low or taken.told.subject == "yours":
         return None
-    surprising = ["surprising"] if taken.information >= SURPRISING and not mood else []
-    frames = lines["frames"].lines(mood, *surprising, taken.told.tense, "say")[0]
+    frames = lines["frames"].lines(mood, taken.told.tense, "say")[0]
     fresh = [line for line in frames if not any(text.startswith(line.text) for text in state.recent[-3:])]
     return chance.choice(fresh or frames)
 
