@@ -1,4 +1,4 @@
-"""The parts of a statement. The set ``flags_rows`` measures how well its flags are found."""
+"""The parts of a statement. The quality set ``flags_rows`` measures how well its flags are found."""
 
 from __future__ import annotations
 

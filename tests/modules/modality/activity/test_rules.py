@@ -15,7 +15,7 @@ from ravestate.testing import Simulation, simulate
 
 
 class Witness:
-    """A module that notes the recognised activities."""
+    """A module that records the recognised activities."""
 
     def __init__(self) -> None:
         self.seen: list[activity.Activity] = []

@@ -42,7 +42,7 @@ def test_a_yes_to_another_question_is_no_permission_to_keep_a_face(memory: Path)
     assert remembered(memory) == {"Joe": 0}
 
 
-def test_only_visionio_answers_a_permission_or_a_wish_about_a_face(memory: Path) -> None:
+def test_only_visionio_answers_a_users_permission_or_request_about_their_face(memory: Path) -> None:
     stage = Stage()
     settings = {
         "visionio": {"source": ""},

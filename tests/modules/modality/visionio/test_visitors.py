@@ -82,6 +82,6 @@ def test_visitors_are_found_by_track_by_distance_to_the_camera_and_by_absence() 
 
 
 def test_the_reprs_of_faces_and_visitors_contain_no_vectors() -> None:
-    """Traces contain these texts."""
+    """A trace contains these reprs."""
     assert "Ada" in repr(face(0.123456, ADA)) and "0.123456" not in repr(face(0.123456, ADA))
     assert "0.98765" not in repr(Visitor("a", ADA, vectors=((1.0, (0.98765,)),)))

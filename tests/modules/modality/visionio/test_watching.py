@@ -42,7 +42,7 @@ class Blind:
 
 
 async def watched(monkeypatch: pytest.MonkeyPatch, eye: Blind, looks: int) -> list[float]:
-    """Look `looks` times; return the time for which the watch waited after each look (seconds)."""
+    """Look `looks` times; return how long the watch waited after each look (seconds)."""
     monkeypatch.setattr(watching, "Eye", lambda _: eye)
     watch = Watch(visionio.Settings(source="/dev/video0", fps=10, load=0.5), None, LOG)
     waits: list[float] = []
@@ -82,7 +82,7 @@ def test_a_lost_camera_is_reported_once_and_reopened_until_it_works(
     assert caplog.text.count("is it unplugged?") == 1 and caplog.text.count("sees again") == 1
 
 
-def test_the_agent_gives_up_a_file_that_fails_repeatedly(
+def test_the_agent_stops_reading_a_file_that_fails_repeatedly(
     monkeypatch: pytest.MonkeyPatch, caplog: pytest.LogCaptureFixture
 ) -> None:
     waits = run(watched(monkeypatch, Blind(100, live=False), 20))
@@ -156,7 +156,7 @@ def test_the_agent_looks_at_the_newest_picture_of_a_platform(tmp_path: Path) -> 
         frames.put(b"broken")
         sim.advance(0.3)
         assert frames.dropped == 3
-        sim.advance(10)  # no pictures come, as if the screen of a telephone were locked
+        sim.advance(10)  # no pictures come, as when a telephone's screen is locked
         assert not sim.read(visionio.visitors)
         for _ in range(3):
             frames.put(data)

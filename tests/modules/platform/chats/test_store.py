@@ -82,7 +82,7 @@ def test_an_answer_is_queued_and_then_begun_and_then_sent(tmp_path: Path) -> Non
     assert store.recorded(entry.n) == []
 
 
-def test_an_edit_can_change_only_the_answer_to_the_newest_message(tmp_path: Path) -> None:
+def test_an_edit_changes_an_answer_only_if_its_message_is_the_newest(tmp_path: Path) -> None:
     store = opened(tmp_path)
     first = store.take(letter("one", id="m1"))
     assert first is not None

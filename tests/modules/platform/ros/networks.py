@@ -52,7 +52,7 @@ def free_port() -> int:
 class Network(abc.ABC):
     """A network with one other node, the peer, in a separate process.
 
-    All nodes of the tests use one loop. So tests can share a node, and do not each start a bridge.
+    All nodes of the tests use one loop. So tests can share a node and its bridge.
     """
 
     version: int
@@ -202,12 +202,12 @@ async def opened(node: Node) -> AsyncIterator[Node]:
 
 
 async def pause(seconds: float) -> None:
-    """Wait for some real time, in which the other processes continue."""
+    """Wait for some real time, so that the other processes continue."""
     await Clock(asyncio.get_running_loop()).sleep(seconds)
 
 
 async def until(reached: Callable[[], object], again: Callable[[], None] = lambda: None, every: float = 0.02) -> None:
-    """Wait until a condition is true. Meanwhile, repeat the action `again`, because nodes take time to connect."""
+    """Repeat the action `again` until a condition is true. One attempt is not enough, because nodes take time to connect."""
     async with asyncio.timeout(PATIENCE):
         while not reached():
             again()

@@ -31,7 +31,7 @@ async def echo(node: Node) -> list[str]:
 
 
 async def numbers(node: Node, got: list[int], count: int) -> list[int]:
-    """Let the peer publish `count` numbers, 1,000 per second; return those numbers that arrived in `got`."""
+    """Let the peer publish `count` numbers, 1,000 per second; return the numbers that arrived in `got`."""
     burst = node.advertise("/burst", "std_msgs/String", qos=ALL)
     await until(lambda: got, lambda: burst.publish("-1 1 0"))
     burst.publish(f"0 {count} 1000")

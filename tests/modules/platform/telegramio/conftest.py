@@ -63,7 +63,7 @@ class Bot:
         return await self.do("say", chat=chat, text=text, **fields)
 
     async def said(self, count: int) -> list[str]:
-        """Wait until there are `count` messages of the bot; return them as "chat: text"."""
+        """Wait until the bot has sent `count` messages; return them as "chat: text"."""
         return [f"{m['chat']['id']}: {m.get('text', m.get('caption'))}" for m in await self.do("said", count=count)]
 
 

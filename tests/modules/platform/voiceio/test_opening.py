@@ -1,4 +1,4 @@
-"""Opening and closing a spoken conversation with all its parts, and its verdicts on what it hears."""
+"""A spoken conversation opens and closes all its parts, and judges the sound that it hears."""
 
 import asyncio
 import gc

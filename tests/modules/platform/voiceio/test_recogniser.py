@@ -80,7 +80,7 @@ def test_a_grammar_recognises_its_commands_and_no_other_words() -> None:
     commands.close()
 
 
-def test_the_message_for_a_missing_grammar_has_its_name(tmp_path: Path) -> None:
+def test_the_error_names_a_missing_grammar(tmp_path: Path) -> None:
     with pytest.raises(PlatformError, match=r"there is no file 'none\.gram'"):
         Recogniser(Settings(recogniser="grammar", model="none.gram"))
 
@@ -93,7 +93,7 @@ def test_a_grammar_with_a_fault_is_refused(tmp_path: Path) -> None:
     broken.close()
 
 
-def test_the_message_about_a_missing_model_says_what_to_do() -> None:
+def test_the_error_about_a_missing_model_says_what_to_do() -> None:
     with pytest.raises(PlatformError, match=r"no model 'huge'; there are: .*ravestate voice get huge"):
         Recogniser(Settings(model="huge"))
 

@@ -1,4 +1,4 @@
-"""A connection: its protocol, its limits, and its reactions to faulty clients."""
+"""A connection follows the protocol, keeps its limits, and reacts to faulty clients."""
 
 import asyncio
 import json

@@ -1,4 +1,4 @@
-"""Whole games in virtual time. A script has a line for each event, and a line with the phrases that must follow."""
+"""Whole games in virtual time. In a script, a line with the expected phrases follows the lines of the events."""
 
 from __future__ import annotations
 
@@ -23,7 +23,7 @@ TEMPLATES = [
     for name, texts in load_yaml(PHRASES.read_text(), "phrases").items()
     for text in sorted(texts["en"], key=len, reverse=True)
 ]
-# The longest phrase comes first, because "{riddle}" also matches "Watch me!".
+# Longer phrases come first, because "{riddle}" would also match "Watch me!".
 TEMPLATES.sort(key=lambda template: -len(template[1].pattern))
 COUNTDOWN = "count count count go"
 
@@ -348,7 +348,7 @@ def test_the_bored_agent_offers_the_game_once() -> None:
         assert charades.offer.state(sim).status == "done"
 
 
-def test_a_bored_user_is_offered_the_game() -> None:
+def test_the_agent_offers_the_game_to_a_user_who_is_bored() -> None:
     with agent() as sim:
         run(
             sim,
@@ -362,7 +362,7 @@ def test_a_bored_user_is_offered_the_game() -> None:
         assert not sim.read(charades.game).is_on
 
 
-def test_small_talk_lets_the_game_answer_a_bored_user() -> None:
+def test_the_game_and_not_small_talk_answers_a_user_who_is_bored() -> None:
     with simulate(charades, wildtalk, settings={"emotion": {"emoji": False}, "wildtalk": {"backend": "listen"}}) as sim:
         run(sim, "> I'm bored\n= offer\n> yes\n= begin")
 
