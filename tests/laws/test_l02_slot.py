@@ -1,4 +1,4 @@
-"""L2: slots are named, typed, long-lived variables, each with signals of its own."""
+"""L2: slots are named, typed, long-lived variables, each with its own signals."""
 
 from typing import Any
 
@@ -11,7 +11,7 @@ from ravestate.testing import simulate
 
 
 def heard_of(m: rs.Module, slot: rs.Slot[Any]) -> list[tuple[str, Any]]:
-    """Declare a rule for each signal of a slot, and return the list in which these rules note the signal's name and payload."""
+    """Declare a rule for each signal of a slot. Return the list to which each rule adds the signal and its payload."""
     heard: list[tuple[str, Any]] = []
     for signal in slot.signals:
         what = signal.name.rsplit(":", 1)[1]
@@ -150,7 +150,7 @@ def test_writing_an_equal_item_merges_no_groups(how: str) -> None:
         assert sim.fired.count("m:know") == 1
 
 
-def test_a_slot_may_be_declared_to_signal_every_write(play: Any) -> None:
+def test_a_slot_with_always_signals_even_an_equal_value(play: Any) -> None:
     m = rs.Module("m")
     said = m.slot("said", "", always=True)
     heard = heard_of(m, said)

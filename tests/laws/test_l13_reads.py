@@ -47,7 +47,7 @@ def test_a_rule_sees_its_own_writes(play: Any) -> None:
         assert sim.read(mood) == "sad"
 
 
-def test_a_write_takes_effect_and_signals_at_once(play: Any) -> None:
+def test_a_write_takes_effect_and_signals_immediately(play: Any) -> None:
     m = rs.Module("m")
     go, mood, out = m.signal("go"), m.slot("mood", "calm"), output(m)
 
@@ -66,7 +66,7 @@ def test_a_write_takes_effect_and_signals_at_once(play: Any) -> None:
         assert sim.fired == ["m:react"]  # while `change` still runs
 
 
-def test_an_emitted_signal_occurs_at_once(play: Any) -> None:
+def test_an_emitted_signal_occurs_immediately(play: Any) -> None:
     m = rs.Module("m")
     go, x, heard = m.signal("go"), m.signal("x"), list[Any]()
 
@@ -98,7 +98,7 @@ def test_a_rule_that_starts_later_sees_earlier_writes(play: Any) -> None:
         assert seen == [("gay", "gay")]
 
 
-def test_a_collection_is_seen_as_it_stood(play: Any) -> None:
+def test_a_rule_sees_a_collection_as_it_stood_when_the_rule_started(play: Any) -> None:
     m = rs.Module("m")
     go, people, seen = m.signal("go"), m.collection("people"), list[Any]()
 

@@ -375,7 +375,7 @@ def test_an_input_or_a_detached_rule_makes_a_cycle_reachable() -> None:
     rs.compile(n)
 
 
-def test_all_faults_are_reported_at_once() -> None:
+def test_all_faults_are_reported_together() -> None:
     elsewhere = rs.Module("elsewhere")
     word = elsewhere.signal("word")
     m, twin = rs.Module("m"), rs.Module("m")
