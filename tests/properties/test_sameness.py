@@ -43,7 +43,7 @@ def test_a_spurious_advance_changes_nothing(world: World, parts: list[float]) ->
 
 
 @given(worlds())
-def test_looking_changes_nothing(world: World) -> None:
+def test_a_snapshot_or_an_explanation_changes_nothing(world: World) -> None:
     assert Play(world, before=lambda play: void(still(play))).play().heard == Play(world).play().heard
 
 
