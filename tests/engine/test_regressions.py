@@ -218,8 +218,8 @@ def test_a_rule_without_an_activation_gives_a_withdrawn_spike_up_too(traced: boo
 
 
 def test_a_spike_of_another_cause_gives_a_rival_no_stake() -> None:
-    # L15, L16: for the cause of s1, r0 is a rival of r2 only if r1 raises s2. To raise it, r1 needs an input, so patience
-    # bounds the wait. Rule r0 also runs for another cause, but the s2 of that cause gives r0 no stake here.
+    # L15, L16: for the cause of s1, r0 is a rival of r2 only if r1 raises s2. To raise it, r1 needs an input, so
+    # patience bounds the wait. Rule r0 also runs for another cause, but the s2 of that cause gives r0 no stake here.
     world = World(
         S3,
         V1,
@@ -235,7 +235,8 @@ def test_a_spike_of_another_cause_gives_a_rival_no_stake() -> None:
 
 
 def test_a_spike_that_an_added_rule_can_look_back_at_is_dropped_in_time() -> None:
-    # L23: the added rule looks back at s0 for 2 s, also at a spike that was born before. At 2 s, nothing holds the spike.
+    # L23: the added rule looks back at s0 for 2 s, also at a spike that was born before. At 2 s, nothing holds the
+    # spike.
     looking = RuleOf(when=((Want("s1"), Want("s0", max_age=2.0, detached=True)),))
     world = World(
         S3,
@@ -310,8 +311,8 @@ OUT = (SlotOf(),)
 
 
 def test_a_younger_activation_is_under_pressure_even_if_its_rule_has_an_older_activation() -> None:
-    # L16: s1 comes at 0 s, and s0 at 0.703 s and 2.139 s. At 2.139 s, the younger activation of r0 lacks s1, so it comes
-    # under pressure.
+    # L16: s1 comes at 0 s, and s0 at 0.703 s and 2.139 s. At 2.139 s, the younger activation of r0 lacks s1, so it
+    # comes under pressure.
     world = World(
         S3,
         OUT,
@@ -371,8 +372,8 @@ def test_a_rule_that_recovers_faster_from_0_overtakes_immediately() -> None:
 
 
 def test_a_rule_that_writes_nothing_frees_its_spike_when_it_starts() -> None:
-    # L10: two activations of r0 hold the first s1. When one of them starts, the other loses this s1, and so can take the
-    # second s1.
+    # L10: two activations of r0 hold the first s1. When one of them starts, the other loses this s1, and so can take
+    # the second s1.
     world = World(
         S3,
         (),
@@ -425,8 +426,8 @@ def test_the_signals_of_one_slot_cohere() -> None:
 
 
 def test_events_of_one_instant_count_in_the_order_in_which_they_arrive() -> None:
-    # L21: r0 begins after the first s1 was born, so only the second s1 ends r0. If all three spikes arrive before r0 can
-    # begin, none of them ends it.
+    # L21: r0 begins after the first s1 was born, so only the second s1 ends r0. If all three spikes arrive before r0
+    # can begin, none of them ends it.
     world = World(
         S3,
         OUT,
@@ -472,8 +473,8 @@ def test_a_detached_clause_keeps_a_spike_with_which_another_clause_of_its_rule_r
 
 
 def test_an_added_rule_takes_a_spike_older_than_itself_once_the_spike_is_old_enough() -> None:
-    # L19: r0 keeps both spikes of s0 alive. r1 is added at 0.75 s, and at first holds the first s0. At 1.5 s, the second
-    # s0 is old enough too, so r1 must hold it instead.
+    # L19: r0 keeps both spikes of s0 alive. r1 is added at 0.75 s, and at first holds the first s0. At 1.5 s, the
+    # second s0 is old enough too, so r1 must hold it instead.
     looking = RuleOf(when=((Want("s0", min_age=1.0, detached=True), Want("s1", min_age=0.5)),))
     world = World(
         S3,
@@ -529,8 +530,8 @@ def test_an_activation_that_has_taken_another_spike_asks_when_it_is_its_new_caus
 
 
 def test_a_stalemate_in_which_two_activations_can_help_the_same_rule_is_broken() -> None:
-    # L15: r1 waits for r3, which may get s2 from either of two activations of r2. But both of them wait for r0, which may
-    # get s2 from r1.
+    # L15: r1 waits for r3, which may get s2 from either of two activations of r2. But both of them wait for r0, which
+    # may get s2 from r1.
     world = World(
         (*S3, SignalOf()),
         (SlotOf(), SlotOf(), SlotOf()),
@@ -652,8 +653,8 @@ def test_a_burst_for_rules_of_one_slot_is_answered_in_order() -> None:
 
 
 def test_a_rule_without_an_activation_puts_its_rival_under_pressure_from_the_first_moment() -> None:
-    # L15, L16: r0 keeps the best rule r2 waiting, and r1 keeps r3 waiting. The patience of r0 and r1 ends at 1 s. Then r2
-    # runs and resigns, so r3 runs in the same instant.
+    # L15, L16: r0 keeps the best rule r2 waiting, and r1 keeps r3 waiting. The patience of r0 and r1 ends at 1 s. Then
+    # r2 runs and resigns, so r3 runs in the same instant.
     rules = (
         RuleOf(when=on("s0", "s1"), writes=("v0",), weight=10.0),
         RuleOf(when=on("s0", "s2"), writes=("v0",)),
@@ -667,8 +668,8 @@ def test_a_rule_without_an_activation_puts_its_rival_under_pressure_from_the_fir
 
 
 def test_the_patience_of_a_rival_ends_even_if_no_rule_waited_for_it_meanwhile() -> None:
-    # L16: r1 puts r0 under pressure until 3 s, and then loses s1 for a while. In the past, the engine then forgot the end
-    # of the patience.
+    # L16: r1 puts r0 under pressure until 3 s, and then loses s1 for a while. In the past, the engine then forgot the
+    # end of the patience.
     rules = (RuleOf(when=((Want("s0"), Want("s1", where="odd")),), writes=("v0",), patience=2.0),)
     inputs = (
         (1.0, ("add", RuleOf(when=on("s1", "s0"), writes=("v0",)))),
@@ -682,8 +683,8 @@ def test_the_patience_of_a_rival_ends_even_if_no_rule_waited_for_it_meanwhile() 
 
 
 def test_no_rule_answers_a_cause_that_has_merged_with_an_answered_cause() -> None:
-    # L11, L18: r1 has answered the first cause, and r2 joins the second cause to the first. So after r3 resigns, r0 must
-    # not run.
+    # L11, L18: r1 has answered the first cause, and r2 joins the second cause to the first. So after r3 resigns, r0
+    # must not run.
     rules = (
         RuleOf(when=on("s0"), writes=("v0",)),
         RuleOf(when=on("s2"), writes=("v0",)),
@@ -709,8 +710,8 @@ def test_a_rival_that_takes_an_input_of_another_group_does_not_get_new_patience(
 
 
 def test_several_rules_can_give_up_a_shared_spike_one_after_another() -> None:
-    # L16: r0, r1 and r2 come under pressure for the second s0 at different moments. When the engine judges them next, the
-    # patience of all three is over. The first rule that gives the spike up can remove it from their shared table.
+    # L16: r0, r1 and r2 come under pressure for the second s0 at different moments. When the engine judges them next,
+    # the patience of all three is over. The first rule that gives the spike up can remove it from their shared table.
     odd = ((Want("s0"), Want("s1", where="odd")),)
     rules = (
         RuleOf(when=((Want("s0", max_age=None), Want("s1")),), writes=("v0",), acts=(Act(seconds=2.0),)),
@@ -729,8 +730,8 @@ def test_several_rules_can_give_up_a_shared_spike_one_after_another() -> None:
 
 
 def test_activations_that_wait_for_one_rule_to_recover_ask_in_the_same_instant() -> None:
-    # L15: at 3.5 s, r0 has recovered to the weight of r1. Two activations of r0 wait for this moment, but since different
-    # times.
+    # L15: at 3.5 s, r0 has recovered to the weight of r1. Two activations of r0 wait for this moment, but since
+    # different times.
     ripe = ((Want("s0", min_age=1.0),),)
     again = (Act(((0.0, ("emit", "s0", 2)),)),)
     rules = (

@@ -272,8 +272,8 @@ class Model:
     def refusals(self, act: Act, without: Iterable[Act] = (), commit: bool = True) -> set[str]:
         """Return why groups refuse consent (L15).
 
-        A slot is ``taken``, or a rival becomes ready, ``surely`` or ``perhaps``. With `commit`, a rival of the last kind
-        is pressed, or gives up (L16). Ignore the work of the activations in `without`.
+        A slot is ``taken``, or a rival becomes ready, ``surely`` or ``perhaps``. With `commit`, a rival of the last
+        kind is pressed, or gives up (L16). Ignore the work of the activations in `without`.
         """
         reasons: set[str] = set()
         still = frozenset((act, *self.kept_by(act), *without))

@@ -122,7 +122,7 @@ def drops(sim: Any, signal: rs.Signal[Any]) -> list[Dropped]:
 
 
 def pathways(policy: rs.Policy, rule: str, clause: int = 0) -> set[str]:
-    """Return the pathways of a clause: for each the short names of its signals in alphabetical order, e.g. ``"a b"``."""
+    """Return the pathways of a clause, each as the short names of its signals in alphabetical order, e.g. ``"a b"``."""
     return {
         " ".join(sorted(signal.name.split(":", 1)[1] for signal in pathway))
         for pathway in policy.clauses(rule)[clause].pathways

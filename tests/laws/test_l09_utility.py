@@ -55,7 +55,7 @@ def test_a_rule_counts_once_however_many_of_its_pathways_share_the_signal() -> N
     hearer(m, "hear", x & i | x & j | x, x, [])
     hearer(m, "other", m.signal("z"), x, [])
     policy = rs.compile(m)
-    # all five pathways with x belong to `hear`; i is on pathways of `hear` and `one`, and j on those of `hear` and `two`
+    # all five pathways with x belong to `hear`; i is on pathways of `hear` and `one`, and j on some of `hear` and `two`
     assert policy.clauses("m:hear")[2].utility == pytest.approx(log(4 / 1) + log(4 / 2))
 
 

@@ -1,4 +1,4 @@
-"""L11: a spike is an occurrence with a payload, a time of birth and parents; its causal group is that of its parents."""
+"""L11: a spike is an occurrence with payload, time of birth and parents. It belongs to its parents' causal group."""
 
 from typing import Any
 

@@ -168,7 +168,7 @@ def test_the_agent_looks_at_the_newest_picture_of_a_platform(tmp_path: Path) -> 
 
 
 def test_the_agent_looks_through_the_users_camera(tmp_path: Path) -> None:
-    """The agent asks for pictures at its own pace, marks the faces on the page, and notices when the camera goes off."""
+    """The agent asks for pictures at its own pace, marks faces on the page, and notices when the camera goes off."""
     user = UserCamera(photo("hanks").read_bytes())
     settings = {"visionio": {"source": "", "fps": 5}, "ontology": {"path": str(tmp_path / "m.lbug")}}
     with simulate(visionio.module, settings=settings) as sim:

@@ -207,7 +207,7 @@ async def pause(seconds: float) -> None:
 
 
 async def until(reached: Callable[[], object], again: Callable[[], None] = lambda: None, every: float = 0.02) -> None:
-    """Repeat the action `again` until a condition is true. One attempt is not enough, because nodes take time to connect."""
+    """Repeat the action `again` until a condition is true. Nodes take time to connect, so one attempt is not enough."""
     async with asyncio.timeout(PATIENCE):
         while not reached():
             again()

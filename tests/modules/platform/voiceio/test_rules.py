@@ -373,7 +373,7 @@ def test_a_line_that_a_platform_provides_at_once_is_opened_only_once(
 
 
 def test_an_output_that_cannot_be_written_ends_the_agent(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
-    """An impossible path ends the agent at the start. A file that becomes unwritable later ends it after the conversation."""
+    """An impossible path ends the agent at the start. A file that becomes unwritable later ends it at the end."""
     script(monkeypatch, "Hello.")
     file, out = wav(tmp_path / "in.wav", track(TELL, length=2.0)), tmp_path / "out.wav"
     with pytest.raises(PlatformError, match=r"ends in \.wav"):
