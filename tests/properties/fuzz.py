@@ -68,7 +68,10 @@ class Interpreter(Model):
 
 
 def story(world: World, machine: Any, names: Names, policy: Policy) -> list[str]:
-    """Play a world that `compiled` has made on a machine, which is an engine or an interpreter. Return a line per effect."""
+    """Play a world on a machine: an engine or an interpreter. Return a line for each effect.
+
+    `names` and `policy` come from `compiled`.
+    """
     lines: list[str] = []
 
     def told(play: Play, effect: Effect) -> None:
@@ -133,9 +136,9 @@ def difference(world: World) -> str:
 def observation(world: World) -> str:
     """Return a text that shows what a tracer changes, or an empty text if it changes nothing (L24, L25).
 
-    A tracer must not change the effects, even if it is added and removed during the play. A journal written with a tracer
-    must replay without a tracer, and the other way round. The trace must always have the present reasons of all waiting
-    activations.
+    A tracer must not change the effects, even if it is added and removed during the play. A journal written with a
+    tracer must replay without a tracer, and the other way round. The trace must always have the present reasons of all
+    waiting activations.
     """
     reasons = Reasons()
     names, policy = compiled(world)

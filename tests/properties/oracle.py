@@ -80,7 +80,7 @@ class Exclusion:
                     a, b = activation.spike(one), activation.spike(other)
                     assert a.group.root() is b.group.root(), f"{name} joins {a} and {b} of different groups"
         key = (clause.index, tuple(spike.id for _, spike in held))
-        # Detached spikes serve any number of runs (L19), so a clause with only such spikes can run twice on the same ones.
+        # Detached spikes serve any number of runs (L19), so a clause with only such spikes can run twice on them.
         assert not firm or key not in self.seen, f"{name} runs twice on {activation.spikes}"
         self.seen.add(key)
         groups = tuple(dict.fromkeys(spike.group.root() for spike in firm)) if rule.slots else ()

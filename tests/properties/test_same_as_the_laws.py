@@ -78,7 +78,7 @@ def test_an_activation_that_begins_to_wait_for_a_run_is_no_longer_in_a_stalemate
 
 
 def test_a_waiting_activation_is_reconsidered_as_soon_as_a_rival_gives_up() -> None:
-    """At 0.5 s, the patience of `r3` for `r0` ends. Then `r2` must run, although it has already asked at 0.5 s (L16)."""
+    """At 0.5 s, the patience of `r3` for `r0` ends. Then `r2` must run, although it asked at 0.5 s before (L16)."""
     half = Act(seconds=0.5)
     rules = (
         RuleOf(when=((Want("s1"), Want("s0")),), writes=("v0",), weight=0.5),
