@@ -1,4 +1,4 @@
-"""The share of time in which a process is idle. Waiting for a processor that other programs use is not idle time."""
+"""The idle share of a process. Time in which it waits for a processor that others use does not count as idle."""
 
 from pathlib import Path
 

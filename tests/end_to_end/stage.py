@@ -78,7 +78,7 @@ class Host:
 
     @contextlib.contextmanager
     def away(self) -> Iterator[None]:
-        """Within the ``with`` block, no client is connected: lose all connections, and refuse new ones."""
+        """Lose all connections, and refuse new connections until the ``with`` block ends."""
         access = self.app.state.access
         access.refusal = lambda headers: "away"
         self.drop()

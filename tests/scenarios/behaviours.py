@@ -140,8 +140,10 @@ def slow_cause(play: Play) -> None:
 
 
 def fusion(play: Play) -> None:
-    """5. `Fused` answers if a gesture comes 300 ms after the words. Without a gesture, `Speech` answers after the
-    patience."""
+    """5. `Fused` answers if a gesture follows the words after 300 ms.
+
+    Without a gesture, `Speech` answers after the patience.
+    """
     for patience, own in ((1.0, None), (2.5, None), (1.0, 0.4)):
         m = rs.Module("m", requires=[rawio])
         point = m.signal("point")
@@ -254,7 +256,7 @@ def burst(play: Play) -> None:
 
 
 def live_objects() -> int:
-    """Count the spikes, activations and groups that Python still keeps."""
+    """Count the spikes, activations and groups that are still in memory."""
     gc.collect()
     # `isinstance` could run the code of an object.
     return sum(type(one) in (Spike, Activation, Group) for one in gc.get_objects())
