@@ -694,7 +694,7 @@ def test_why_not_names_the_run_that_answered_and_not_the_run_that_resigned(stage
     assert "demo:second" not in str(found)
 
 
-def test_from_an_older_trace_without_run_numbers_only_the_rule_is_named(stage: Stage) -> None:
+def test_for_an_older_trace_without_run_numbers_why_not_names_only_the_rule(stage: Stage) -> None:
     two_runs(stage)
     with stage.run() as sim:
         sim.put(stage.input, "x")

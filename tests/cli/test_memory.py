@@ -112,7 +112,7 @@ def test_messages_name_files_that_cannot_be_written_or_read(file: Path, folder: 
 
 
 @pytest.mark.parametrize("answer", ["n\n", "", "\n", "yess\n"])
-def test_forget_asks_first_and_forgets_nobody_without_a_yes(
+def test_forget_asks_first_and_forgets_no_person_without_a_yes(
     file: Path, capsys: Capture, monkeypatch: pytest.MonkeyPatch, answer: str
 ) -> None:
     monkeypatch.setattr(sys, "stdin", io.StringIO(answer))

@@ -83,7 +83,7 @@ def test_only_conditions_can_be_combined(other: object) -> None:
         _ = a | other
 
 
-def test_the_message_about_a_slot_beside_a_condition_names_its_signal() -> None:
+def test_the_message_about_a_slot_combined_with_a_condition_names_its_signal() -> None:
     with pytest.raises(rs.DeclarationError, match=r"a slot is not a signal: write & mood\.changed"):
         _ = a & mood
     with pytest.raises(rs.DeclarationError, match=r"a slot is not a signal: write \| mood\.changed"):

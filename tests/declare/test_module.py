@@ -83,7 +83,7 @@ def python_module(**contents: object) -> types.ModuleType:
     return found
 
 
-def test_a_python_module_stands_for_its_module(demo: rs.Module) -> None:
+def test_a_python_module_can_be_used_in_place_of_its_module(demo: rs.Module) -> None:
     other = rs.Module("other")
     assert as_module(python_module(module=demo, other=other)) is demo
     assert as_module(python_module(demo=demo, again=demo)) is demo

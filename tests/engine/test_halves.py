@@ -149,7 +149,7 @@ def test_a_rule_that_resigned_leaves_the_spikes_to_other_rules() -> None:
 
 
 def with_added_pair(held: str, traced: bool) -> Engine:
-    """Return an engine with a rule `a & b` that was added beside a live spike of the signal `held`."""
+    """Return an engine to which a rule `a & b` was added while a spike of the signal `held` was live."""
     m = rs.Module("m")
     signals = {name: m.signal(name) for name in "ab"}
     declared(m, "keeps", when=signals[held] & m.signal("c"))

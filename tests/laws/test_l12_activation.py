@@ -1,5 +1,7 @@
-"""L12: an activation is a clause and the spikes that it has acquired. One activation always stands by; several may hold
-the same spike; the spikes of an activation cohere."""
+"""L12: an activation is a clause and the spikes that it has acquired.
+
+One activation of each rule always stands by. Several can hold the same spike. The spikes of an activation cohere.
+"""
 
 from typing import Any
 

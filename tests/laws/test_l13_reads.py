@@ -1,4 +1,4 @@
-"""L13: a rule sees slots as they stood when it started, plus its own writes, which take effect at once."""
+"""L13: a rule sees slots as they stood when it started, plus its own writes, which take effect immediately."""
 
 from typing import Any
 

@@ -1,4 +1,4 @@
-"""L16: a rival stands while its missing spikes may still come, and no activation waits longer than that."""
+"""L16: a rival is viable while its missing spikes may still come. No activation waits longer than that."""
 
 import sys
 from typing import Any
@@ -294,7 +294,7 @@ def test_the_patience_of_a_rule_does_not_start_over_when_a_second_rule_presses_i
 
 
 def foreign(after: float, **options: Any) -> tuple[rs.Module, rs.Signal[Any], rs.Signal[Any], rs.Slot[str]]:
-    """Declare a rival that lacks `x`, which only `make` raises, for another cause (`kick`)."""
+    """Declare a rival that lacks `x`. Only `make` raises `x`, and only for another cause (`kick`)."""
     m = rs.Module("m")
     i, kick, x, out = m.signal("i"), m.signal("kick"), m.signal("x"), output(m)
     emitter(m, "make", kick, x, after=after, **options)
@@ -410,7 +410,7 @@ def test_a_rival_is_pressed_from_the_moment_at_which_it_lost_a_spike(play: Any) 
 
 
 def mixed(after: float, **options: Any) -> tuple[rs.Module, rs.Signal[Any], rs.Signal[Any], rs.Slot[str]]:
-    """Declare a rival that lacks `x`, which may come in the group, and `j`, an input."""
+    """Declare a rival that lacks `x` and `j`. A rule of the group may still raise `x`, and `j` is an input."""
     m = rs.Module("m")
     i, j, x, out = m.signal("i"), m.signal("j"), m.signal("x"), output(m)
     emitter(m, "classify", i, x, after=after, **options)

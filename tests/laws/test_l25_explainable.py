@@ -15,7 +15,7 @@ from scenarios.driver import Driver
 
 
 def alive(sim: Any, rule: str) -> ActivationState:
-    """Return the explanation of the one live activation of a rule."""
+    """Return the explanation of a rule's only live activation."""
     [activation] = sim.explain(rule).activations
     return activation
 

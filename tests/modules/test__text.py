@@ -27,5 +27,5 @@ def test_the_result_can_be_printed(text: str) -> None:
 
 
 @given(st.lists(st.text(st.characters(codec=None, categories=None), max_size=10)))
-def test_cleaning_piece_by_piece_equals_cleaning_the_whole(pieces: list[str]) -> None:
+def test_cleaning_a_text_piece_by_piece_gives_the_same_result(pieces: list[str]) -> None:
     assert "".join(map(without_controls, pieces)) == without_controls("".join(pieces))

@@ -305,7 +305,7 @@ def test_a_chain_of_requires_of_any_length_compiles() -> None:
 # ---------------------------------------------------------------------------------------- settings
 
 
-def test_a_setting_stands_for_its_default_until_settings_are_given() -> None:
+def test_a_reference_to_a_setting_means_its_default_until_settings_are_given() -> None:
     m = rs.Module("m", settings=Late)
     rule(m, "r", m.signal("go").min_age(Late.after), cooldown=rs.setting("after"))
     plan = rs.compile(m).rule_plan("m:r")

@@ -151,7 +151,9 @@ def test_signals_that_no_rule_hears_are_reported(scene: Scene) -> None:
     scene.rule("emit", scene.heard, emits=(lost, watched))
     scene.rule("watch", scene.heard, writes=scene.out, until=watched)
     found = scene.findings()
-    assert list(found) == [("unheard", "m:lost")]  # no rule raises `free`, and slots may be read
+    assert list(found) == [
+        ("unheard", "m:lost")
+    ]  # not reported: `free`, which no rule raises, and slots, which can be read
     assert (
         found["unheard", "m:lost"]
         == "unheard: no rule hears signal m:lost, which m:emit may raise; remove it, or write a rule that hears it"

@@ -110,7 +110,7 @@ async def test_a_rule_that_raises_an_error_is_logged_once_and_the_next_best_rule
             (record,) = handler.records
             assert record.levelno == logging.ERROR and record.getMessage().startswith("rule m:fails failed: ")
             assert record.exc_info is not None and record.exc_info[1] is failure
-            assert await talk.ask(context) == "fallback"  # and the conversation goes on
+            assert await talk.ask(context) == "fallback"  # the conversation continues
 
 
 def test_an_error_handler_that_takes_too_long_causes_no_further_error() -> None:

@@ -125,7 +125,7 @@ def test_a_purge_that_a_kill_prevented_is_done_after_the_next_start(
     monkeypatch.setattr(worker, "PAUSE", 0.01)
     memory = open_here(path=killed)
     memory.find("City").result()
-    # The first rest may come before the types are read; by the second one, there has been a pause.
+    # The first call of `rest` can come before the types are read. The second call comes after a pause.
     assert rests.acquire(timeout=60) and (not holds(killed) or rests.acquire(timeout=60))
     assert not holds(killed)
     assert [city["name"] for city in memory.find("City").result()] == ["London"]

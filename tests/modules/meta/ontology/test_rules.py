@@ -168,7 +168,7 @@ def test_a_write_to_a_bound_slot_also_writes_to_memory(tmp_path: Path, open_here
     assert (found.id, dict(found.properties)) == (ada.id, {"name": "Ada 19", "nickname": "A"})
 
 
-def test_writing_none_to_a_bound_slot_forgets_nobody(tmp_path: Path, open_here: Open) -> None:
+def test_writing_none_to_a_bound_slot_does_not_forget_the_person(tmp_path: Path, open_here: Open) -> None:
     with simulate(desk, settings=at(tmp_path / "m.lbug")) as sim:
         sim.emit(said, {"name": "Ada"})
         sim.emit(said, None)

@@ -151,7 +151,7 @@ def test_a_worker_that_dies_is_replaced_and_the_video_continues(clip: Path) -> N
         killed = eye.process.pid
         os.kill(killed, signal.SIGKILL)
         with pytest.raises(PlatformError, match="ended"):
-            for _ in range(3):  # the process may take a moment to die
+            for _ in range(3):  # the process can take a moment to die
                 await see(eye, 0.5)
         assert await see(eye, 1.0) == 1
         assert eye.process.pid not in (None, killed)

@@ -164,8 +164,8 @@ def test_a_face_that_is_lost_for_a_moment_still_belongs_to_the_same_visitor(memo
         assert one.tracks == {1, 2}
 
 
-def test_face_vectors_from_another_module_are_used_as_well(memory: Path) -> None:
-    """For example, a robot may have its own face recogniser."""
+def test_face_vectors_from_another_module_are_used_too(memory: Path) -> None:
+    """For example, a robot can have its own face recogniser."""
     ada = Node("Person", {"name": "Ada"})
     with agent(memory) as sim:
         for _ in range(3):

@@ -1,4 +1,4 @@
-"""The sender: the rate of messages, refused voice notes, and a file that cannot be written."""
+"""The sender limits the rate of messages, and handles refused voice notes and a file that cannot be written."""
 
 import asyncio
 from pathlib import Path

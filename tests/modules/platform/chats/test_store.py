@@ -181,7 +181,7 @@ def test_move_changes_the_chat_of_all_messages_of_a_chat(tmp_path: Path) -> None
     assert (item.message.chat, item.begun) == ("b", False)
 
 
-def test_only_one_process_may_open_the_file_and_only_the_user_may_read_it(tmp_path: Path) -> None:
+def test_only_one_process_can_open_the_file_and_only_the_user_can_read_it(tmp_path: Path) -> None:
     store = opened(tmp_path)
     with pytest.raises(PlatformError, match="another agent uses it"):
         opened(tmp_path)

@@ -163,7 +163,7 @@ class Link:
         return self.sockets.pop()
 
     def subscriber(self, number: int) -> bytes:
-        """Hand over a connection with a new subscriber. Return the data that the subscriber gets at once."""
+        """Hand over a connection with a new subscriber. Return the data that the subscriber gets immediately."""
         ours, theirs = socket.socketpair()
         self.sockets.append(ours)
         what = {"topic": "/topic", "depth": 5}

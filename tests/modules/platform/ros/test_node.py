@@ -54,7 +54,7 @@ def test_every_message_of_a_fast_topic_arrives_in_order(either: Network) -> None
             node.subscribe(
                 "/numbers", "std_msgs/Int32", lambda message: got.append(message.data), latest=False, qos=ALL
             )
-            # A second channel of the topic may skip messages. The first channel must get them all the same.
+            # A second channel of the topic skips messages. Even so, the first channel must get all of them.
             node.subscribe("/numbers", "std_msgs/Int32", lambda message: None, qos=ALL)
             assert await numbers(node, got, 400) == list(range(400))
 

@@ -354,7 +354,7 @@ class Server:
         return message
 
     async def do_crowd(self, bot: str, messages: list[dict[str, Any]]) -> Any:
-        """Let many users write at once."""
+        """Let many users write at the same time."""
         for message in messages:
             await self.do_say(bot, **message)
 

@@ -77,7 +77,7 @@ def telegram(tmp_path_factory: pytest.TempPathFactory) -> Iterator[Telegram]:
 
 @pytest.fixture
 def own_telegram(tmp_path: Path) -> Iterator[Telegram]:
-    """A server that a test may kill."""
+    """A server that only one test uses, so the test can kill it."""
     server = Telegram(tmp_path)
     server.start()
     yield server

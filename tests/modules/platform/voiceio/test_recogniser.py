@@ -38,7 +38,7 @@ def test_recordings_of_people_are_recognised_with_few_errors() -> None:
 
 
 def test_the_words_of_a_short_sound_are_not_repeated() -> None:
-    """In a short sound, the model may miss the end of the speech and begin again."""
+    """In a short sound, the model sometimes misses the end of the speech, and begins again."""
     small = Recogniser(Settings(model="tiny.en"))
     for text in ("Dinner is ready.", "I have never been so happy.", "Can we start again?"):
         found = small.recognise(bytes(9600) + spoken(text) + bytes(6400))
@@ -137,7 +137,7 @@ def test_after_a_crash_the_recogniser_tries_once_more(monkeypatch: pytest.Monkey
 
 
 def test_a_long_recording_is_recognised_in_pieces(monkeypatch: pytest.MonkeyPatch) -> None:
-    """The time limit applies to each piece, so a recording may have any length."""
+    """The time limit applies to each piece, so a recording can have any length."""
     small = Recogniser(Settings(model="tiny.en"))
     texts = list(transcriptions(LIBRIVOX / "transcription").items())[:5]
     texts += texts[:1]

@@ -33,7 +33,7 @@ TELL = (0.5, "Please tell me a story.")
 
 
 def script(monkeypatch: pytest.MonkeyPatch, *texts: str | Exception, confidence: float = 0.9) -> Scripted:
-    """Replace the recogniser: it returns these texts, whatever the sound."""
+    """Replace the recogniser by one that returns these texts for any sound."""
     one = Scripted(*texts, confidence=confidence)
     monkeypatch.setattr(opening, "Recogniser", one)
     return one
@@ -112,7 +112,7 @@ def test_a_user_who_still_speaks_when_the_agent_begins_interrupts_the_agent(
     assert heard.heard[-1] > 2.2  # the recogniser got the whole rest of the sentence
 
 
-def test_the_user_interrupts_and_the_agent_stops_at_once(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+def test_the_user_interrupts_and_the_agent_stops_immediately(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     script(monkeypatch, "Tell me a story.", "Stop, that is enough.")
     file = wav(tmp_path / "in.wav", track(TELL, (5.0, "Stop, that is enough."), length=8.0))
     said = talk(file, tmp_path / "out.wav", storyteller(), settings=FAST)
@@ -231,7 +231,7 @@ def test_pieces_are_spoken_once_and_a_different_output_is_spoken_after_them(
     tmp_path: Path,
     monkeypatch: pytest.MonkeyPatch,
 ) -> None:
-    """The pieces may end in a space that the output lacks. The rule does not set the flag ``rawio.speaking``."""
+    """The pieces can end with a space that the output lacks. The rule does not set the flag ``rawio.speaking``."""
     script(monkeypatch, "Tell me a story.")
     file = wav(tmp_path / "in.wav", track(TELL, length=3.0))
     said = talk(file, None, teller(pieces, *outputs), settings=settings(filler_after=0))
@@ -344,10 +344,10 @@ def test_if_a_platform_serves_users_voiceio_uses_its_line_and_opens_no_device(
         assert sim.read(voiceio.conversation) is None
 
 
-def test_a_line_that_a_platform_provides_at_once_is_opened_only_once(
+def test_a_line_that_a_platform_provides_at_the_start_is_opened_only_once(
     monkeypatch: pytest.MonkeyPatch, tmp_path: Path
 ) -> None:
-    """A page may provide its line as soon as the context starts."""
+    """A page can provide its line as soon as the context starts."""
 
     from modules.platform.voiceio.test_wav_line import run
     from ravestate.modules.platform.voiceio.wav_line import WavLine

@@ -41,7 +41,7 @@ def changed(**facts: Any) -> Life:
 def test_memory_has_each_relation_and_type_that_the_agents_facts_need() -> None:
     types = types_of(ontology.Settings())
     for relation, type in RELATIONS.values():
-        types.check_relation("Robot", relation, type)  # raises if memory has no such relation
+        types.check_relation("Robot", relation, type)  # raises an error if memory has no such relation
 
 
 def test_each_start_updates_the_agents_node_in_memory_from_the_life_file(with_memory: Any) -> None:

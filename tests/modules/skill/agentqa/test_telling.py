@@ -30,7 +30,7 @@ def test_a_list_of_values_is_joined_with_commas_and_and(items: list[str], text: 
     [
         (date(2026, 3, 1), "0 days"),
         (date(2026, 2, 28), "1 day"),
-        (date(2026, 3, 5), "0 days"),  # not born yet
+        (date(2026, 3, 5), "0 days"),  # the date of birth is in the future
         (date(2026, 1, 2), "58 days"),
         (date(2026, 1, 1), "2 months"),
         (date(2025, 3, 2), "11 months"),
