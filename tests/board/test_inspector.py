@@ -1,4 +1,4 @@
-"""Inspectors: the records they get, their questions and commands, and their limits."""
+"""Inspectors are connections to the board: the records they get, their questions, commands and limits."""
 
 import json
 from typing import Any

@@ -1,4 +1,4 @@
-"""The recorder: bounded memory and cost, and a count of missed spikes."""
+"""A recorder limits its memory and its work, and counts the spikes that it misses."""
 
 import contextlib
 import gc

@@ -1,3 +1,5 @@
+"""A diagram is built from rules: nodes for rules, signals and slots, and edges for what the rules declare."""
+
 from draw.examples import games, prompting, rule
 from ravestate.declare.module import Module
 from ravestate.declare.settings import setting

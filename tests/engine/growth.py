@@ -1,4 +1,4 @@
-"""Workloads whose cost must grow as fast as their size, and the number of steps of the engine that each one takes.
+"""Workloads whose costs must not grow faster than their size, and a count of the engine's steps for each workload.
 
 Each line of the engine that runs is a step. A list of a causal group's members counts one step for each member, because
 a single line makes the whole list. Steps can only be counted in pure Python, so ``test_growth.py`` runs this file in a

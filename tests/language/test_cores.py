@@ -1,3 +1,5 @@
+"""The number of cores that a model uses."""
+
 import os
 
 import pytest

@@ -1,4 +1,4 @@
-"""L3: a rule is an annotated function; it touches nothing that it did not declare."""
+"""L3: a rule is an annotated function. It can use only what it has declared."""
 
 import inspect
 from typing import Any

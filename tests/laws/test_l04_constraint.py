@@ -1,4 +1,4 @@
-"""L4: a constraint is a signal with ages, `detached` and predicates on the payload; predicates on slots only gate."""
+"""L4: a constraint is a signal with ages, `detached` and payload predicates. Slot predicates only gate a rule."""
 
 from typing import Any
 

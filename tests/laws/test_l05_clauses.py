@@ -1,4 +1,4 @@
-"""L5: conditions in disjunctive normal form; one clause at a time; declaration order everywhere."""
+"""L5: conditions become clauses (disjunctive normal form). A rule fires by one clause at a time, in declared order."""
 
 from itertools import pairwise
 from typing import Any

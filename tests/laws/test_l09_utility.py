@@ -1,4 +1,7 @@
-"""L9: the self-information of the least pathway, times weight, times recovery. (The worked example: tests/policy.)"""
+"""L9: utility is the self-information of the least pathway, times weight, times recovery.
+
+`tests/policy/test_pathways.py` has the worked example.
+"""
 
 from math import log
 from typing import Any

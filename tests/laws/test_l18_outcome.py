@@ -1,4 +1,4 @@
-"""L18: the outcomes of a run, and their effect on slots and spikes: done, resign, error, retire."""
+"""L18: a run ends as Done, Resign, Error or Retire. Each outcome has effects on slots and spikes."""
 
 import logging
 from typing import Any

@@ -1,4 +1,4 @@
-"""L19: a detached constraint only looks; a detached rule's effects have no parents; every other loop ends."""
+"""L19: a detached constraint only looks, and a detached rule's effects have no parents. Every other loop ends."""
 
 from typing import Any
 

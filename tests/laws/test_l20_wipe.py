@@ -1,4 +1,4 @@
-"""L20: wiping a signal withdraws its live spikes and all their descendants; `keep="latest"`."""
+"""L20: wiping a signal withdraws its live spikes and their descendants. `keep="latest"` withdraws older spikes."""
 
 from typing import Any
 

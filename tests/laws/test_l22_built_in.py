@@ -1,4 +1,4 @@
-"""L22: startup, shutdown, error; and the flags activity and pressure."""
+"""L22: the built-in signals startup, shutdown and error, and the built-in flags activity and pressure."""
 
 from typing import Any
 

@@ -1,4 +1,4 @@
-"""L25: every rule can be explained at any moment: its spikes, its wait, and why it did not fire. The trace."""
+"""L25: every rule can be explained at any moment, and a trace has every decision."""
 
 import json
 from typing import Any, get_args

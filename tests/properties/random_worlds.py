@@ -1,4 +1,4 @@
-"""Random worlds from a seed. They are made much faster than examples of Hypothesis, so a test can play thousands."""
+"""Random worlds from a seed. Making one is much faster than an example of Hypothesis, so a test can play thousands."""
 
 from __future__ import annotations
 

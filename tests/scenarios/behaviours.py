@@ -119,7 +119,7 @@ def qa_resigns(play: Play) -> None:
 
 
 def slow_cause(play: Play) -> None:
-    """4. While the classifier runs for 2 s, `Wildtalk` waits, `core:pressure` is true, and a filler may speak."""
+    """4. While the classifier runs for 2 s, `Wildtalk` waits, `core:pressure` is true, and a filler can speak."""
     m, _ = dialogue(takes=2.0)
     talker(m, "Filler", rs.pressure.true.min_age(0.8), hears=False, background=True)
     for text, answer in (
@@ -164,8 +164,10 @@ def fusion(play: Play) -> None:
 
 
 def prompt_loop(play: Play) -> None:
-    """6. In silence, the agent asks again 10 s plus the patience after each prompt. After an answer, only `Answered`
-    fires, and only once."""
+    """6. While the user is silent, the agent asks again 10 s plus the patience after each prompt.
+
+    After an answer, only `Answered` fires, and only once.
+    """
     m = rs.Module("m", requires=[rawio])
     prompted = m.signal("prompted")
 

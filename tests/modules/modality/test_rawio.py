@@ -1,4 +1,4 @@
-"""rawio: each input raises a signal, even if it equals the last one. Code outside rules can write the input."""
+"""In `rawio`, each input raises a signal, even if it equals the last input. Code outside rules can write the input."""
 
 import asyncio
 

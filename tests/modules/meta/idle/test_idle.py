@@ -1,4 +1,4 @@
-"""idle notices silence and delay at the right moment of virtual time."""
+"""`idle` notices silence and delay at the right moment of virtual time."""
 
 import pytest
 

@@ -1,4 +1,4 @@
-"""The whole analysis accepts any text."""
+"""The whole analysis accepts any text, and recognises the agent's name."""
 
 from hypothesis import HealthCheck, given, settings
 from hypothesis import strategies as st

@@ -1,4 +1,4 @@
-"""The module in an agent: its slots, signals, and errors."""
+"""The module `nlp` in an agent: its slots, signals and errors."""
 
 import subprocess
 import sys

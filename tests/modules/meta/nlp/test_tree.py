@@ -1,4 +1,4 @@
-"""A text as a tree of plain records."""
+"""A parsed text is a tree of plain records."""
 
 from ravestate.modules.meta.nlp.tree import Tree, Word
 

@@ -1,4 +1,4 @@
-"""Unusable servers: each causes a clear error, and none blocks memory."""
+"""Memory on a Bolt server. An unusable server causes a clear error, and never blocks memory."""
 
 from __future__ import annotations
 

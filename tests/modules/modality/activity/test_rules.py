@@ -1,4 +1,4 @@
-"""The module in virtual time: poses come in, activities come out, and lessons are kept."""
+"""The module `activity` in virtual time: it recognises activities from poses, and learns new ones."""
 
 from __future__ import annotations
 

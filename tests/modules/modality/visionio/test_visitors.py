@@ -1,4 +1,4 @@
-"""Decisions about the faces of a track, and the visitors to whom tracks belong. The tests use short vectors."""
+"""Decisions about whose face a track shows, and which visitor it belongs to. The tests use short vectors."""
 
 from ravestate.modules.meta.ontology import Node
 from ravestate.modules.modality.visionio.face import FaceVec

@@ -1,4 +1,4 @@
-"""Watching a camera: how failures are reported, and how often the agent looks."""
+"""The agent watches a camera: how often it looks, and how it reports failures."""
 
 import logging
 from pathlib import Path

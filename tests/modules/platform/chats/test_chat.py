@@ -1,4 +1,4 @@
-"""Chats: slow answers, chats that close during an answer, groups, edits, and a file that cannot be written."""
+"""Chats with slow answers, chats that close meanwhile, groups, edits, and a file that cannot be written."""
 
 import contextlib
 from collections.abc import Generator

@@ -1,4 +1,4 @@
-"""The store: messages that survive the death of a process, and messages that it forgets."""
+"""The store keeps messages when a process dies, and forgets messages on request or after some time."""
 
 import sqlite3
 import stat
@@ -97,7 +97,7 @@ def test_an_edit_changes_an_answer_only_if_its_message_is_the_newest(tmp_path: P
     assert store.answer_to(late) is None
     unanswered = store.take(letter("five", id="m2", kind="edit"))
     assert unanswered is not None
-    assert store.answer_to(unanswered) is None  # an edit of the first message has come since
+    assert store.answer_to(unanswered) is None  # meanwhile, an edit of m1 was the newest message
 
 
 def test_a_message_is_dropped_after_several_crashes_but_not_after_clean_ends(tmp_path: Path) -> None:

@@ -1,4 +1,4 @@
-"""The connection to a robot: turning the base, speaking, and wrong fields."""
+"""The connection to a robot turns its base and makes it speak. Wrong fields are refused."""
 
 import asyncio
 from typing import Any

@@ -1,4 +1,4 @@
-"""A line to audio devices: PortAudio's callbacks deliver blocks of sound, and an unplugged device is reopened."""
+"""A line to audio devices passes blocks of sound. It reopens a device that was unplugged."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Recognition of speech with real models, and the results for other sounds."""
+"""Recognition of speech with real models, and what the recogniser does with other sounds and failures."""
 
 import runpy
 import threading

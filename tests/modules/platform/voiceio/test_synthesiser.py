@@ -1,4 +1,4 @@
-"""Voices: sound and the times of its words, prosody, and messages about missing voices."""
+"""A voice turns text into sound, with the time of each word and a prosody. Missing voices are reported."""
 
 import itertools
 

@@ -1,4 +1,4 @@
-"""Recognising the end of a turn, back-channels, and echoes of the agent's own words."""
+"""The agent recognises the end of a turn, back-channels, and echoes of its own words."""
 
 import pytest
 

@@ -1,4 +1,4 @@
-"""The audio line to a page: blocks and streams of sound, the position of the loudspeaker, and browser windows."""
+"""The audio line to a page passes sound in both directions, and knows how much the loudspeaker has played."""
 
 import asyncio
 

@@ -1,4 +1,4 @@
-"""The web server: its answers, its addresses, its end, and the documented client."""
+"""The web server: its answers, addresses and checks, its end, and the client in the documentation."""
 
 import asyncio
 import io

@@ -1,4 +1,4 @@
-"""Conversations: visitors who are writing, the agent's name, and the reasons for the end."""
+"""In a conversation: visitors who are writing, the agent's name, and the reason for the end."""
 
 import asyncio
 

@@ -1,4 +1,4 @@
-"""genqa in an agent: its answers, its silence, and its failures."""
+"""`genqa` in an agent: when it answers, when it leaves the answer to others, and what happens after failures."""
 
 from collections.abc import AsyncGenerator, Iterator, Sequence
 from pathlib import Path
