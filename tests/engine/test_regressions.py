@@ -696,7 +696,7 @@ def test_no_rule_answers_a_cause_that_has_merged_with_an_answered_cause() -> Non
     assert runs(play) == ["r1", "r2", "r3"]
 
 
-def test_a_rival_that_takes_an_input_of_another_group_does_not_get_new_patience() -> None:
+def test_a_rival_that_takes_an_input_of_another_group_is_under_pressure_from_that_moment() -> None:
     # L16: r2 stands by when r1 puts it under pressure at 0 s. Then r2 gets an activation, which takes the place of the
     # stand-by and comes under pressure immediately. So the patience of both ends at 1 s.
     rules = (

@@ -1,4 +1,4 @@
-"""A room gives each chat a context, which can rest and resume. It also handles failed deliveries and groups."""
+"""A room has all chats of an agent on one messenger. Each chat has its own context, which can rest and resume."""
 
 import asyncio
 import itertools

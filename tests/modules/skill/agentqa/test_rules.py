@@ -184,7 +184,7 @@ def test_the_answer_to_how_are_you_is_the_agents_mood(tmp_path: Path) -> None:
         assert say(sim, "Hello, how are you today?") == "I am a little shy. And you?"
 
 
-def test_the_age_follows_the_clock_of_the_context(tmp_path: Path) -> None:
+def test_the_agents_age_changes_on_its_birthday(tmp_path: Path) -> None:
     own = "{facts: {born: 2020-03-02}, topics: {age: {phrases: '{age}'}}}"
     with start(tmp_path, own=own) as sim:
         sim.put(agentqa.clock, lambda: datetime(2026, 3, 1, 12, 5, tzinfo=UTC))
