@@ -21,7 +21,7 @@ from ravestate.engine.effects import Cancel, Effect, Ended, Failed, Run
 from ravestate.errors import RuleError, RuleTimeout
 
 INSTANT = 0.5e-9
-"""Two moments that differ by at most this many seconds count as one."""
+"""The greatest difference of two times that count as one moment (seconds)."""
 
 BATCH = 100
 """The number of rules that may start without consent before the events of their runs arrive."""

@@ -482,7 +482,7 @@ def test_a_rival_whose_slot_is_consumed_is_not_viable(play: Any) -> None:
 def test_no_rule_waits_for_a_rival_whose_gate_is_closed(play: Any) -> None:
     m = rs.Module("m")
     i, mood, out = m.signal("i"), m.slot("mood", "calm"), output(m)
-    writer(m, "gated", i & mood.holds(lambda value: value == "gay"), out)
+    writer(m, "gated", i & mood.holds(lambda value: value == "merry"), out)
     writer(m, "general", i, out)
     with play(m) as sim:
         sim.emit(i)

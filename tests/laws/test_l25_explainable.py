@@ -97,7 +97,7 @@ def test_an_explanation_shows_a_spike_that_ripens_and_a_closed_gate(play: Any) -
     m = rs.Module("m")
     i, mood, out = m.signal("i"), m.slot("mood", "calm"), output(m)
     writer(m, "later", i.min_age(2.0), out)
-    writer(m, "gated", i & mood.holds(lambda value: value == "gay"), out)
+    writer(m, "gated", i & mood.holds(lambda value: value == "merry"), out)
     with play(m) as sim:
         sim.emit(i)
         later, gated = alive(sim, "m:later"), alive(sim, "m:gated")

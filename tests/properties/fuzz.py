@@ -165,7 +165,7 @@ class Reasons:
 
     def __init__(self) -> None:
         self.told: dict[int, tuple[str, ...]] = {}
-        """Number of an activation → the names of the rules for which it waits."""
+        """For the number of each waiting activation: the names of the rules for which it waits."""
         self.fault = ""
         """The first difference as text, or an empty text."""
 

@@ -169,7 +169,7 @@ class SlotOf(Brief):
 class World(Brief):
     """Signals ``s0, s1, ...``, slots ``v0, v1, ...``, rules ``r0, r1, ...``, and inputs, each with a delay (seconds).
 
-    They are distributed in turn over the modules ``m, m1, m2, ...``.
+    The modules ``m, m1, m2, ...`` declare these signals, slots and rules in turn.
     """
 
     signals: tuple[SignalOf, ...] = ()
@@ -299,13 +299,13 @@ class Play:
     names: Names | None = None
     traced: bool = False
     before: Callable[[Play], None] | None = None
-    """A callback before time passes: `self.engine` is quiet, and nothing happens until `self.next_time()`."""
+    """A callback before time passes. The engine has settled, and nothing happens until `self.next_time()`."""
     started: Callable[[Play, Effect], None] | None = None
     """A callback with each effect of a batch, before the first of them is performed."""
     budget: int = BUDGET
-    """Calls of a rule after which it retires."""
+    """The number of calls after which a rule retires."""
     machine: Callable[..., Any] = Counted
-    """The engine, or an interpreter in its place."""
+    """The class of the engine, or of an interpreter in its place."""
     now: float = 0.0
     heard: list[str] = field(default_factory=list)
     taken: list[list[Effect]] = field(default_factory=list)

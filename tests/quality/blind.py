@@ -80,7 +80,7 @@ TRICKY = ("denied", "past", "hearsay", "conditional", "nothing", "question")
 SINGLE = (
     "name", "home", "origin", "birthplace", "childhood", "age", "occupation", "employer", "subject", "university",
 )  # fmt: skip
-"""Topics with only one value: a new value replaces the old one. So do topics that begin with ``favourite``."""
+"""Topics with only one value: a new value replaces the old value. Topics that begin with ``favourite`` are like these."""
 _KNOWN = re.compile(r"\[knows ([^]=]+)=([^]]*)\] ")
 
 

@@ -19,9 +19,9 @@ from typing import Any
 
 ROOT = Path(__file__).resolve().parents[2]
 LONGEST = 25
-"""The maximum of words in a sentence, or between its semicolons and colons. A code span counts as one word."""
+"""The maximum number of words in a sentence, or between its semicolons and colons. A code span counts as one word."""
 WHOLE = 40
-"""The maximum of words between two full stops, across semicolons and colons."""
+"""The maximum number of words between two full stops, across semicolons and colons."""
 
 HEADLESS = re.compile(
     r"^(?:(?:And|But|So|Or|Also|Then)[ ,]+)?"

@@ -10,7 +10,7 @@ from ravestate.testing import simulate
 watch = rs.Module("watch", requires=[rawio, idle])
 times = watch.slot("times", ())
 SOON = {"bored_after": 5.0, "answer_time": 12.0}
-"""Short silences."""
+"""Settings with short silences."""
 
 
 @watch.rule(when=idle.bored, writes=times)

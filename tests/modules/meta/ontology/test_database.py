@@ -32,7 +32,7 @@ FORMAT_1 = (
     "MATCH (a:Person {id: 'Person:1'}), (b:Person {id: 'Person:2'}) CREATE (a)-[:friend_of]->(b)",
     "MATCH (a:Person), (b:Boat) CREATE (a)-[:owns {since: '2020-01-01'}]->(b)",
 )
-"""Statements that make a memory as earlier versions did, with a table for each type and relation."""
+"""Statements that make a memory like those of earlier versions, with a table for each type and each relation."""
 
 
 def write_format_1(path: Path, *more: str) -> None:

@@ -10,9 +10,9 @@ from ravestate.modules.modality.activity import Pose, Recogniser
 from ravestate.modules.modality.activity.recogniser import Recognition
 
 RIGHT = 0.9
-"""It must recognise at least this share of held-out performances of known activities."""
+"""The minimum share of held-out performances of known activities that the recogniser must recognise."""
 REJECTED = 0.9
-"""It must reject at least this share of held-out performances of unknown movements."""
+"""The minimum share of held-out performances of unknown movements that the recogniser must reject."""
 
 
 def test_held_out_performances_are_recognised_and_unknown_movements_rejected() -> None:

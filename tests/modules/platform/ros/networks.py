@@ -26,7 +26,7 @@ from ravestate.runtime.clock import Clock
 
 HERE = Path(__file__).parent
 PATIENCE = 20.0
-"""A test fails if it waits longer than this (seconds)."""
+"""The time after which a waiting test fails (seconds)."""
 ROS2_PYTHON = Path(sys.prefix).parent / ".venvs" / "ros2" / "bin" / "python"
 OWN = HERE / "definitions"
 """A folder with the definitions of a message package that is not installed."""

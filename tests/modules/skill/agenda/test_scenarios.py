@@ -10,7 +10,7 @@ from ravestate.modules.skill.agenda import Goal, GoalState
 from ravestate.testing import Simulation, simulate
 
 PATIENT = {"idle": {"remarks": 100}}
-"""Settings of an agent that pursues goals however long the user is silent."""
+"""Settings of an agent that continues to pursue goals during a long silence of the user."""
 AT_ONCE = {"agenda": {"gap": 0.0}, "idle": {"bored_after": 5.0, "answer_time": 0.0, "remarks": 100}}
 
 

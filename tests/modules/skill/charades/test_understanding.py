@@ -12,7 +12,7 @@ from ravestate.modules.skill.charades.understanding import understand
 pytestmark = pytest.mark.usefixtures("reader")
 
 FLOOR = 0.95
-"""The share of these sentences that the game must understand, at least."""
+"""The minimum share of these sentences that the game must understand."""
 
 ROWS = """
 off      | let's play charades                 | wanted
