@@ -80,7 +80,7 @@ TRICKY = ("denied", "past", "hearsay", "conditional", "nothing", "question")
 SINGLE = (
     "name", "home", "origin", "birthplace", "childhood", "age", "occupation", "employer", "subject", "university",
 )  # fmt: skip
-"""Topics with only one value: a new value replaces the old value. Topics that begin with ``favourite`` are like these."""
+"""Topics with only one value: a new value replaces the old value. ``favourite ...`` topics do the same."""
 _KNOWN = re.compile(r"\[knows ([^]=]+)=([^]]*)\] ")
 
 
