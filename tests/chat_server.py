@@ -1,4 +1,4 @@
-"""A server on the loopback interface that speaks OpenAI's protocol, correctly or with faults, as a test tells it."""
+"""A server on the loopback interface that speaks OpenAI's protocol, and makes mistakes on demand."""
 
 from __future__ import annotations
 

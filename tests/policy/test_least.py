@@ -47,7 +47,7 @@ def test_the_least_pathway_is_found_in_a_ring_of_any_length(count: int) -> None:
     for number in range(count):
         m.rule(when=ring[number], emits=ring[(number + 1) % count], name=f"r{number}")(nothing)
     policy = rs.compile(m)
-    # All rules but one have the whole ring on their pathways, and all have the entry.
+    # All rules except one have the whole ring on their pathways, and all rules have the entry.
     each = log((count + 1) / count)
     for number in (0, count // 2, count - 1):
         (clause,) = policy.clauses(f"m:r{number}")

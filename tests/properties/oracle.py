@@ -42,7 +42,7 @@ class Started:
 
 
 class Exclusion:
-    """Asserts that of two runs that exclude each other, only one runs or fires (L10, L15, L18)."""
+    """Asserts that two runs that exclude each other never run together, and never both fire (L10, L15, L18)."""
 
     def __init__(self) -> None:
         self.runs: dict[int, Started] = {}
