@@ -1,4 +1,4 @@
-"""A server on loopback that speaks OpenAI's protocol as a test wants it."""
+"""A server on the loopback interface that speaks OpenAI's protocol, and makes mistakes on demand."""
 
 from __future__ import annotations
 
@@ -10,7 +10,7 @@ from typing import Any
 
 
 class Talk:
-    """A request at the server, and the way to answer it."""
+    """A request to the server, and methods that answer it."""
 
     def __init__(self, path: str, headers: dict[str, str], body: Any, writer: asyncio.StreamWriter) -> None:
         self.path, self.headers, self.body, self._writer = path, headers, body, writer
@@ -32,7 +32,7 @@ class Talk:
         await self.event({"choices": [{"index": 0, "delta": delta, "finish_reason": finish}]})
 
     async def gone(self) -> None:
-        """Wait until the client has hung up."""
+        """Send comments until the client closes the connection."""
         try:
             while True:
                 await self.raw(": still there?\n\n")
@@ -49,7 +49,7 @@ Answer = Callable[[Talk], Awaitable[None]]
 
 
 class ChatServer:
-    """A server that answers each request by `answer`, and keeps the requests."""
+    """A server that answers each request with the function `answer`, and keeps the requests."""
 
     def __init__(self, answer: Answer) -> None:
         self.answer = answer

@@ -1,11 +1,11 @@
-"""Fixtures of every test: a temporary data folder instead of the user's, and the Hypothesis profiles.
+"""Settings and fixtures for all tests: a temporary data folder, and the profiles of Hypothesis.
 
 - `ci` (the default of `make test` and of continuous integration): the same examples each time, so that only a change of
   the code can cause a failure.
-- `dev` (the default of a bare `pytest`): fresh examples, and the failing ones are remembered.
-- `fuzz` (`make fuzz`): fresh examples, and many.
+- `dev` (the default of a bare `pytest`): new examples each time. Hypothesis remembers those that fail.
+- `fuzz` (`make fuzz`): many new examples each time.
 
-No profile has a deadline: benchmarks measure time. Choose with `HYPOTHESIS_PROFILE`.
+The variable `HYPOTHESIS_PROFILE` chooses a profile. No profile has a deadline, because benchmarks measure time.
 """
 
 import contextlib
@@ -24,15 +24,15 @@ from hypothesis import HealthCheck, settings
 for _library in ("OPENBLAS", "OMP", "MKL"):
     os.environ.setdefault(f"{_library}_NUM_THREADS", "1")
 
-# Freed memory stays with the process of the tests: the next test with models would take the same pages again. These are
-# M_TRIM_THRESHOLD and M_MMAP_THRESHOLD of glibc's malloc.h, in bytes, at their maxima.
+# Keep freed memory in the test process, because the next test with models needs it again. These numbers set
+# M_TRIM_THRESHOLD and M_MMAP_THRESHOLD of glibc's malloc.h to their maxima (bytes).
 with contextlib.suppress(AttributeError, OSError, TypeError):
     _malloc = ctypes.CDLL(None)
     _malloc.mallopt(-1, 2**31 - 1)
     _malloc.mallopt(-3, 32 * 2**20)
 
 _folder = tempfile.TemporaryDirectory(prefix="ravestate-tests-")
-os.environ["XDG_DATA_HOME"] = _folder.name  # for the commands that tests start as well
+os.environ["XDG_DATA_HOME"] = _folder.name  # the commands that tests start also use this folder
 os.environ["RAVESTATE_WILDTALK_SEARCH"] = "false"  # no test looks at the ports and folders of this machine
 
 _shared = {
@@ -47,19 +47,19 @@ settings.load_profile(os.environ.get("HYPOTHESIS_PROFILE") or ("ci" if "CI" in o
 
 TESTS = Path(__file__).parent
 FIRST = ("quality", "properties", "end_to_end", "bridges", "modules", "examples", "cli", "repo", "board", "draw")
-"""The folders with the files that take longest."""
+"""The folders with the slowest tests, which run first."""
 REAL = ("end_to_end", "bridges", "modules/platform")
-"""The folders whose tests need a browser, a server or a robot beside them, in real time. A machine may stall these
-programs for seconds, so continuous integration runs a failing test a second time. The report names such tests."""
+"""The folders whose tests need a browser, a server or a robot in real time. A busy machine can stall these programs
+for seconds, so continuous integration runs a failing test a second time. The report names such tests."""
 
 
 SERVERS = {"matrixio": "a homeserver", "ros": "two networks", "roboyio": "two networks"}
-"""Folder of a platform → the servers that its tests need. These start slowly."""
+"""For the folder of a platform: the servers that its tests need, which start slowly."""
 
 
 @pytest.hookimpl(optionalhook=True)
 def pytest_xdist_make_scheduler(config: pytest.Config, log: Any) -> Any:
-    """Give all files that share servers to one process, so that these start once."""
+    """Run all files that share servers in one process, so that each server starts only once."""
     from xdist.scheduler import LoadFileScheduling
 
     class Scheduling(LoadFileScheduling):
@@ -90,7 +90,7 @@ def pytest_collection_modifyitems(config: pytest.Config, items: list[pytest.Item
 def small_heap() -> None:
     """Exclude all objects that exist before a file's tests from garbage collection.
 
-    Otherwise, each collection would visit the tests themselves, the modules and the models: a third of the time.
+    Otherwise, each collection would visit the tests, the modules and the models. This would take a third of the time.
     """
     gc.collect()
     gc.freeze()
@@ -98,7 +98,7 @@ def small_heap() -> None:
 
 @pytest.fixture
 def chat_server() -> Any:
-    """The class of a server on loopback that speaks OpenAI's protocol as a test wants it."""
+    """The class `ChatServer`: a server that speaks OpenAI's protocol."""
     from chat_server import ChatServer
 
     return ChatServer

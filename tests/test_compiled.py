@@ -1,4 +1,4 @@
-"""The compiled build: when it runs, and when the sources do."""
+"""Ravestate runs either its compiled build or its sources. These tests say when it runs which."""
 
 import os
 import subprocess
@@ -15,7 +15,7 @@ PROBE = (
 
 
 def probe(**environment: str) -> tuple[str, str]:
-    """Return which build runs in a new process, and the suffix of the file of a module that may be compiled."""
+    """Return which build a new process uses, and the suffix of the file of a module that can be compiled."""
     clean = {name: value for name, value in os.environ.items() if name != "RAVESTATE_PURE"}
     run = subprocess.run(
         [sys.executable, "-c", PROBE], env=clean | environment, capture_output=True, text=True, check=True
@@ -24,18 +24,18 @@ def probe(**environment: str) -> tuple[str, str]:
     return build, Path(file).suffix
 
 
-def test_the_sources_run_if_the_environment_says_so() -> None:
+def test_the_variable_ravestate_pure_makes_the_sources_run() -> None:
     assert probe(RAVESTATE_PURE="1") == (compiled.PURE, ".py")
 
 
-def test_the_build_is_the_one_that_is_named() -> None:
+def test_build_names_the_build_that_really_runs() -> None:
     build, suffix = probe()
     assert (build == compiled.COMPILED) == (suffix != ".py")
 
 
 @pytest.fixture
 def place(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
-    """A package's folder with one compiled source."""
+    """The folder of a package with one source that has been compiled."""
     (tmp_path / "engine").mkdir()
     (tmp_path / "engine" / "spike.py").write_text("one = 1\n")
     monkeypatch.setattr(compiled, "SOURCES", str(tmp_path))
@@ -50,7 +50,7 @@ def stamp(place: Path) -> None:
     (place / "stamp").write_text(f"{compiled.checksum(['engine/spike.py'])}\nengine/spike.py\n")
 
 
-def test_compiled_modules_come_before_their_sources(place: Path) -> None:
+def test_compiled_modules_are_found_before_their_sources(place: Path) -> None:
     stamp(place)
     path = [str(place / "engine")]
     compiled.build.cache_clear()
@@ -59,7 +59,7 @@ def test_compiled_modules_come_before_their_sources(place: Path) -> None:
     assert path == [str(place / "native" / "engine"), str(place / "engine")]
 
 
-def test_changed_sources_run_as_pure_python(place: Path) -> None:
+def test_changed_sources_run_instead_of_an_outdated_build(place: Path) -> None:
     stamp(place)
     (place / "engine" / "spike.py").write_text("one = 2\n")
     compiled.build.cache_clear()
@@ -71,7 +71,7 @@ def test_changed_sources_run_as_pure_python(place: Path) -> None:
 
 
 @pytest.mark.parametrize("missing", ["stamp", "engine/spike.py"])
-def test_without_a_stamp_or_a_source_nothing_is_compiled(place: Path, missing: str) -> None:
+def test_without_a_stamp_or_a_source_the_build_counts_as_pure(place: Path, missing: str) -> None:
     stamp(place)
     (place / missing).unlink()
     compiled.build.cache_clear()

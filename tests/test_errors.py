@@ -1,4 +1,4 @@
-"""The exception tree, and the hint "did you mean"."""
+"""The tree of exceptions, and the hint "did you mean"."""
 
 import pytest
 
@@ -25,13 +25,13 @@ def test_each_error_derives_from_the_root_and_a_builtin(error: type[Exception], 
     assert issubclass(error, builtin)
 
 
-def test_one_text_has_all_faults() -> None:
+def test_the_text_of_the_group_has_all_faults() -> None:
     faults = rs.DeclarationErrors([rs.DeclarationError("one"), rs.DeclarationError("two")])
     assert str(faults) == "2 faults in the declarations:\n  - one\n  - two"
     assert str(rs.DeclarationErrors([rs.DeclarationError("one")])).startswith("1 fault in the declarations:")
 
 
-def test_faults_can_be_picked_out_of_the_group() -> None:
+def test_except_star_and_split_select_faults_of_the_group() -> None:
     group = rs.DeclarationErrors([rs.DeclarationError("one"), rs.DeclarationError("two")])
     matching, rest = group.split(lambda error: str(error) == "one")
     assert isinstance(matching, rs.DeclarationErrors) and "1 fault" in str(matching)
@@ -44,7 +44,7 @@ def test_faults_can_be_picked_out_of_the_group() -> None:
     assert [str(error) for error in caught] == ["one", "two"]
 
 
-def test_the_text_of_a_lookup_error_is_not_quoted() -> None:
+def test_the_text_of_an_undeclared_error_has_no_quotation_marks() -> None:
     assert str(rs.UndeclaredError("add reads=mood")) == "add reads=mood"
     assert str(rs.UndeclaredError()) == ""
 
@@ -60,8 +60,8 @@ def test_the_text_of_a_lookup_error_is_not_quoted() -> None:
         ),
         ("a_long_module_name:go", ["b:go"], "; did you mean 'b:go'?"),
         ("idel", ["interloc", "idle"], "; did you mean 'idle'?"),
-        ("idel", ["interloc", "rawio"], ""),  # three letters of eight
-        ("abel", ["ablest", "able"], "; did you mean 'able'?"),  # neighbours exchanged are one slip
+        ("idel", ["interloc", "rawio"], ""),  # only three letters of eight agree
+        ("abel", ["ablest", "able"], "; did you mean 'able'?"),  # two exchanged letters count as one mistake
         ("ba", ["ab"], "; did you mean 'ab'?"),
         ("gretting", ["getting_on", "greeting"], "; did you mean 'greeting'?"),
         ("bored", ["board", "bored_after_a_long_while"], "; did you mean 'bored_after_a_long_while'?"),
@@ -71,10 +71,10 @@ def test_the_text_of_a_lookup_error_is_not_quoted() -> None:
         ("anything", [], ""),
     ],
 )
-def test_the_nearest_name_is_the_hint(name: str, known: list[str], hint: str) -> None:
+def test_the_hint_names_the_nearest_name(name: str, known: list[str], hint: str) -> None:
     assert nearest(name, known) == hint
 
 
-def test_a_misspelt_name_of_the_package_gets_a_hint() -> None:
+def test_the_error_about_a_misspelt_public_name_has_a_hint() -> None:
     with pytest.raises(AttributeError, match="ravestate has no 'Modul'; did you mean 'Module'"):
         _ = rs.Modul

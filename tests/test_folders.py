@@ -1,4 +1,4 @@
-"""The folder for a user's files, on each platform."""
+"""The folder for a user's files on each operating system."""
 
 import sys
 from pathlib import Path
@@ -23,7 +23,7 @@ from ravestate.folders import user_folder
         ("state", "win32", {"LOCALAPPDATA": ""}, "/ada/AppData/Local/ravestate"),
     ],
 )
-def test_the_folder_is_that_of_the_platform(
+def test_the_folder_follows_the_conventions_of_the_operating_system(
     monkeypatch: pytest.MonkeyPatch,
     kind: Literal["data", "state"],
     platform: str,

@@ -1,4 +1,4 @@
-"""The package as a command."""
+"""The package runs as a command: ``python -m ravestate``."""
 
 import subprocess
 import sys
@@ -9,7 +9,7 @@ import ravestate as rs
 from ravestate import compiled
 
 
-def test_the_package_runs_as_a_module() -> None:
+def test_python_m_ravestate_runs_the_command() -> None:
     run = subprocess.run([sys.executable, "-m", "ravestate", "--version"], capture_output=True, text=True, check=False)
     assert (run.returncode, run.stdout.strip()) == (0, f"ravestate {rs.__version__} ({compiled.build()})")
 
@@ -30,7 +30,7 @@ sys.exit(script())
 
 
 @pytest.mark.parametrize("during", ["ravestate.cli", "ravestate.cli.check"])
-def test_ctrl_c_during_the_imports_is_130_without_a_traceback(during: str) -> None:
+def test_ctrl_c_during_the_imports_gives_exit_code_130_without_a_traceback(during: str) -> None:
     program = INTERRUPTED.replace("sys.argv[1]:", f"{during!r}:")
     run = subprocess.run([sys.executable, "-c", program], capture_output=True, text=True, check=False)
     assert (run.returncode, run.stderr) == (130, "")

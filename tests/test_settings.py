@@ -1,4 +1,4 @@
-"""Settings: typed, from code, environment and defaults; messages name every fault and show no secret."""
+"""Settings come from code, the environment and defaults. Messages name every fault, and show no secret."""
 
 import json
 from typing import Any
@@ -43,12 +43,12 @@ def faults(modules: list[rs.Module], given: Any, environment: dict[str, str] | N
 # ---------------------------------------------------------------------------------------- the class
 
 
-def test_a_field_of_the_class_is_a_reference() -> None:
+def test_a_field_of_a_settings_class_is_a_reference_to_the_setting() -> None:
     assert Voice.speed == SettingRef("speed", Voice)
     assert Voice().speed == 1.0
 
 
-def test_an_inherited_field_is_a_reference_too() -> None:
+def test_an_inherited_field_is_also_a_reference_to_the_setting() -> None:
     class Loud(Voice):
         volume: int = 3
 
@@ -57,27 +57,27 @@ def test_an_inherited_field_is_a_reference_too() -> None:
     assert Loud().model_dump()["volume"] == 3
 
 
-def test_a_misspelt_field_gets_a_hint() -> None:
+def test_the_error_about_a_misspelt_field_has_a_hint() -> None:
     with pytest.raises(AttributeError, match="Voice has no setting 'sped'; did you mean 'speed'"):
         _ = Voice.sped
 
 
-def test_settings_cannot_be_changed_once_they_are_made() -> None:
+def test_settings_are_immutable() -> None:
     with pytest.raises(pydantic.ValidationError):
         Voice().name = "Eve"
 
 
-# ---------------------------------------------------------------------------------------- where values come from
+# ---------------------------------------------------------------------------------------- sources of values
 
 
-def test_given_values_go_before_the_environment_and_that_before_defaults() -> None:
+def test_given_values_override_the_environment_which_overrides_defaults() -> None:
     environment = {"RAVESTATE_VOICE_NAME": "Eve", "RAVESTATE_VOICE_SPEED": "2.5"}
     found = load_settings([voice, plain], {"voice": {"name": "Max"}}, environment)
     assert found["voice"] == Voice(name="Max", speed=2.5)
     assert load_settings([voice, plain], None, {}) == {"voice": Voice()}
 
 
-def test_the_process_environment_is_the_default(monkeypatch: pytest.MonkeyPatch) -> None:
+def test_by_default_values_come_from_the_environment_of_the_process(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setenv("RAVESTATE_VOICE_NAME", "Eve")
     assert load_settings([voice])["voice"].name == "Eve"
 
@@ -86,12 +86,12 @@ def test_the_process_environment_is_the_default(monkeypatch: pytest.MonkeyPatch)
     ("field", "text", "value"),
     [
         ("words", '["a", "b"]', ("a", "b")),
-        ("name", "12", "12"),  # text stays text
+        ("name", "12", "12"),  # a text field takes the text as it is
         ("name", '"quoted"', '"quoted"'),
         ("speed", "0.5", 0.5),
     ],
 )
-def test_the_environment_holds_json_for_all_but_text(field: str, text: str, value: object) -> None:
+def test_environment_variables_are_read_as_json_except_for_text_fields(field: str, text: str, value: object) -> None:
     found = load_settings([voice], None, {variable_of("voice", field): text})
     assert getattr(found["voice"], field) == value
 
@@ -106,20 +106,22 @@ def test_the_environment_holds_json_for_all_but_text(field: str, text: str, valu
         (Mixed, "maybe", "null", None),
         (Mixed, "either", "12", 12),
         (Mixed, "count", "12", 12),
-        (Mixed, "count", "twelve", "twelve"),  # which the settings refuse
+        (Mixed, "count", "twelve", "twelve"),  # `Mixed` later refuses this value
     ],
 )
-def test_the_value_of_a_text(model: type[rs.Settings], field: str, text: str, value: object) -> None:
+def test_a_text_is_parsed_only_if_its_field_takes_more_than_text(
+    model: type[rs.Settings], field: str, text: str, value: object
+) -> None:
     assert value_of(text, model, field, json.loads) == value
 
 
-def test_variables_are_named_after_module_and_field() -> None:
+def test_an_environment_variable_has_the_name_of_its_module_and_field() -> None:
     assert variable_of("my-server", "address") == "RAVESTATE_MY_SERVER_ADDRESS"
     found = load_settings([my_server], None, {"RAVESTATE_MY_SERVER_ADDRESS": "here"})
     assert found["my-server"].address == "here"
 
 
-def test_an_instance_stays_as_it_is() -> None:
+def test_an_instance_of_the_settings_class_is_used_as_it_is() -> None:
     value = Voice(name="Max")
     assert load_settings([voice], {"voice": value}, {"RAVESTATE_VOICE_NAME": "Eve"})["voice"] is value
 
@@ -127,33 +129,33 @@ def test_an_instance_stays_as_it_is() -> None:
 # ---------------------------------------------------------------------------------------- faults
 
 
-def test_one_error_has_all_faults() -> None:
+def test_one_error_has_all_faults_of_the_settings() -> None:
     found = faults(
         [voice, plain],
         {"voice": {"speed": "fast", "sped": 2}, "plain": {"x": 1}, "voise": {"speed": 2}},
     )
     assert len(found) == 4
     text = "\n".join(found)
-    assert "settings for 'plain': module 'plain' has no settings" in found  # and nothing like it is proposed
+    assert "settings for 'plain': module 'plain' has no settings" in found  # without a hint
     assert "settings for 'voise': module 'voise' is not part of this agent; did you mean 'voice'?" in text
     assert "setting voice.speed = 'fast': Input should be a valid number" in text
     assert "setting voice.sped: module 'voice' has no such setting; did you mean 'speed'?" in text
 
 
-def test_a_missing_setting_says_how_to_give_it() -> None:
+def test_the_error_about_a_missing_setting_says_how_to_give_it() -> None:
     (fault,) = faults([my_server], {"my-server": {"keys": ["s3cret"]}})
     assert fault.startswith("setting my-server.address is missing: write --set my-server.address=...")
     assert "RAVESTATE_MY_SERVER_ADDRESS" in fault
     assert "s3cret" not in fault
 
 
-def test_a_message_shows_no_secret() -> None:
+def test_an_error_message_shows_no_secret() -> None:
     for module, values in ((voice, {"key": ["s3cret"]}), (my_server, {"address": "", "keys": [["s3cret"]]})):
         (fault,) = faults([module], {module.name: values})
         assert "s3cret" not in fault and "Input should be" in fault
 
 
-def test_a_validator_of_several_fields_shows_no_values() -> None:
+def test_the_error_of_a_validator_of_several_fields_shows_no_values() -> None:
     class Range(rs.Settings):
         low: int = 0
         secret: str = "s3cret"
@@ -174,7 +176,7 @@ def test_a_huge_value_is_shortened() -> None:
 
 
 @pytest.mark.parametrize("values", [3, "name=Max", ["name"], None])
-def test_values_must_be_a_mapping(values: Any) -> None:
+def test_values_that_are_not_a_mapping_are_refused(values: Any) -> None:
     (fault,) = faults([voice], {"voice": values})
     assert fault == f"settings for 'voice' must be a mapping of fields to values, not {values!r}"
 

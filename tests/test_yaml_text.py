@@ -1,4 +1,4 @@
-"""Reading YAML: the plain case, and texts that must end at once with a message."""
+"""Reading YAML: correct texts, and hostile or invalid texts that must be refused quickly with a message."""
 
 from collections.abc import Callable
 from pathlib import Path
@@ -16,7 +16,7 @@ LAUGHS = "a: &a [x, x, x, x, x, x, x, x, x, x]\n" + "".join(
     f"{name}: &{name} [{', '.join([f'*{before}'] * 10)}]\n"
     for before, name in zip("abcdefghijkl", "bcdefghijklm", strict=True)
 )
-"""A trillion values in 13 lines."""
+"""YAML with a trillion values in 13 lines."""
 
 HOSTILE = {
     "aliases": (LAUGHS, "file.yaml:5: more than 100,000 values once the aliases are followed"),
@@ -27,7 +27,7 @@ HOSTILE = {
 }
 
 
-def test_values_are_read() -> None:
+def test_a_yaml_text_is_read_as_its_values() -> None:
     assert load_yaml("a: &a [1, two, 3.0, yes]\nb: *a\nc: {<<: {d: e}}\n", "file.yaml") == {
         "a": [1, "two", 3.0, True], "b": [1, "two", 3.0, True], "c": {"d": "e"},
     }  # fmt: skip
@@ -36,7 +36,7 @@ def test_values_are_read() -> None:
 
 @pytest.mark.parametrize("read", [load_yaml, compose_yaml])
 @pytest.mark.parametrize(("text", "message"), HOSTILE.values(), ids=HOSTILE)
-def test_hostile_texts_end_at_once(read: Callable[[str, str], Any], text: str, message: str) -> None:
+def test_hostile_texts_are_refused_immediately(read: Callable[[str, str], Any], text: str, message: str) -> None:
     with pytest.raises(DeclarationError) as caught:
         read(text, "file.yaml")
     assert str(caught.value) == message
@@ -59,7 +59,7 @@ def test_hostile_texts_end_at_once(read: Callable[[str, str], Any], text: str, m
         (f"a: {':'.join(['59'] * 1_000)}.5", "file.yaml:1: not valid YAML (a number of more than 300 digits)"),
     ],
 )
-def test_a_text_that_is_not_valid_is_refused_with_its_line(text: str, message: str) -> None:
+def test_the_error_about_an_invalid_text_names_the_line(text: str, message: str) -> None:
     with pytest.raises(DeclarationError) as caught:
         load_yaml(text, "file.yaml")
     assert str(caught.value).startswith(message)
@@ -74,7 +74,9 @@ READERS: dict[str, Callable[[Path], object]] = {
 
 @pytest.mark.parametrize("read", READERS.values(), ids=READERS)
 @pytest.mark.parametrize("kind", ["aliases", "mappings"])
-def test_every_file_of_a_user_is_read_within_bounds(read: Callable[[Path], object], kind: str, tmp_path: Path) -> None:
+def test_every_reader_of_user_files_refuses_hostile_texts(
+    read: Callable[[Path], object], kind: str, tmp_path: Path
+) -> None:
     text, message = HOSTILE[kind]
     (tmp_path / "file.yaml").write_text(text, encoding="utf-8")
     with pytest.raises(DeclarationError) as caught:

@@ -46,7 +46,7 @@ async def talk(ctx: rs.RuleContext) -> None:
 
 @gossip.rule(when=cheered)
 async def bow(ctx: rs.RuleContext) -> None:
-    """Do nothing; the signal carries a payload."""
+    """A rule that does nothing. Its signal carries a payload."""
 
 
 async def passing(seconds: float) -> None:
@@ -57,10 +57,10 @@ async def passing(seconds: float) -> None:
 
 
 class Loop(VirtualLoop):
-    """A virtual loop that runs work for an executor at once, without a thread."""
+    """A virtual loop that runs work for an executor immediately, without a thread."""
 
     def run_in_executor(self, executor: Any, func: Any, *args: Any) -> Any:
-        """Run the function at once."""
+        """Run the function immediately."""
         future = self.create_future()
         try:
             future.set_result(func(*args))
@@ -107,7 +107,7 @@ class Look(Visit):
         self.records: list[dict[str, Any]] = []
 
     async def begin(self, **fields: Any) -> dict[str, Any]:
-        """Say hello, read the welcome and the state after it, and return the welcome."""
+        """Say hello, read the welcome and the state that follows it, and return the welcome."""
         self.tell("hello", v=1, **fields)
         welcome = await self.next()
         if welcome["type"] == "welcome":

@@ -171,7 +171,7 @@ async def test_an_aborted_upload_does_not_delay_other_uploads() -> None:
 
 
 @in_virtual_time
-async def test_a_site_that_may_embed_the_chat_may_neither_embed_nor_use_the_board() -> None:
+async def test_a_site_that_may_embed_the_chat_can_neither_embed_nor_use_the_board() -> None:
     site = "https://museum.example"
     async with board(origins=(site,)) as app, client(app) as browser:
         async with Visit(app, origin=site) as visit:

@@ -1,4 +1,4 @@
-"""The description of a policy: utilities add up, and signals, slots and rules refer to each other."""
+"""In the description of a policy, the parts of a utility add up, and signals and slots name the rules that use them."""
 
 import math
 

@@ -37,8 +37,8 @@ def test_ran_is_true_between_the_start_and_the_end_of_a_run(time: float, runs: b
         born(1, "m:s"),
         born(2, "m:s", group=2),
         *run(1, "m:r", (1,), 1.0, 5.0),
-        *run(2, "m:r", (1,), 2.0, 2.2),  # in parallel
-        *run(3, "m:r", (2,), 5.2, 6.0),  # for another cause
+        *run(2, "m:r", (1,), 2.0, 2.2),  # it runs in parallel
+        *run(3, "m:r", (2,), 5.2, 6.0),  # it runs for another cause
         *run(4, "m:r", (1,), 7.0, None),
     ]
     assert History(records, 1).ran("m:r", time) is runs
@@ -88,7 +88,7 @@ def test_value_returns_the_last_write_to_a_slot_up_to_a_time() -> None:
     assert history.value("m:y", 9.0) is None
 
 
-def test_lacks_stays_unchanged_when_an_attempt_loses_all_its_spikes_at_once() -> None:
+def test_lacks_stays_unchanged_when_an_attempt_loses_all_its_spikes_together() -> None:
     held = [Held(0.0, 7, "m:r", 0, 1, "m:s", ("m:t", "m:u")), Held(1.0, 7, "m:r", 0, 2, "m:t", ("m:u",))]
     lost = [GaveUp(2.0, 7, "m:r", spike, signal, "age") for spike, signal in ((1, "m:s"), (2, "m:t"))]
     history = History([born(1, "m:s"), born(2, "m:t"), *held, *lost], 1)

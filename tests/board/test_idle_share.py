@@ -1,4 +1,4 @@
-"""The share of time in which a process is idle. Waiting for a processor that other programs use is not idle time."""
+"""The idle share of a process. Time in which it waits for a processor that others use does not count as idle."""
 
 from pathlib import Path
 
@@ -33,7 +33,7 @@ def test_share_measures_the_idle_time_since_its_last_call(clocks: Clocks) -> Non
     clocks.advance(2.0, computed=0.5)
     assert spare.share() == 0.75
     clocks.advance(1.0, computed=1.0)
-    assert spare.share() == 0.0  # no idle time since the last call
+    assert spare.share() == 0.0  # no idle time has passed after the last call
 
 
 def test_time_spent_waiting_for_other_programs_is_not_idle(clocks: Clocks) -> None:

@@ -1,4 +1,4 @@
-"""Inspectors: the records they get, their questions and commands, and their limits."""
+"""Inspectors are connections to the board: the records they get, their questions, commands and limits."""
 
 import json
 from typing import Any
@@ -446,7 +446,7 @@ async def test_the_agents_new_name_becomes_the_title_unless_the_title_is_fixed()
         told: list[dict[str, Any]] = []
         while not names_told(told):
             told += await look.frames("records")
-        look.tell("say", text="Hello")  # look at the next frames as well
+        look.tell("say", text="Hello")  # also look at the next frames
         told += await look.frames("records")
         assert "renamed" not in [frame["type"] for frame in told]
 

@@ -1,4 +1,4 @@
-"""The laid-out diagram: modules can be folded, and no node is lost or overlaps another."""
+"""In the diagram, modules can be folded. No node is lost, and no two nodes overlap."""
 
 import itertools
 

@@ -1,4 +1,4 @@
-"""The recorder: bounded memory and cost, and a count of missed spikes."""
+"""A recorder limits its memory and its work, and counts the spikes that it misses."""
 
 import contextlib
 import gc
@@ -55,7 +55,7 @@ async def test_a_full_recorder_drops_its_oldest_records() -> None:
 
 
 @in_virtual_time
-async def test_above_its_rate_a_recorder_stops_recording_and_counts_the_missed_spikes() -> None:
+async def test_a_recorder_that_gets_too_many_records_stops_and_counts_the_missed_spikes() -> None:
     context, tick = ticking()
     recorder = Recorder(context, burst=200, rate=100, spare=0)
     async with context:

@@ -1,4 +1,4 @@
-"""Rendering values as text: the whole value if possible, otherwise a cut one; rendering never fails."""
+"""Values are rendered as text, which is cut if it is too long. Rendering never fails."""
 
 import json
 

@@ -1,4 +1,4 @@
-"""A repr in chunks: the same text as Python's `repr`, but chunks that nobody reads are never made."""
+"""A repr in chunks has the same text as Python's `repr`. Chunks that are not read are never made."""
 
 import dataclasses
 from collections import Counter, OrderedDict, defaultdict, deque

@@ -1,4 +1,4 @@
-"""Calls outside of any task, as the board makes them, and callers that are cancelled meanwhile."""
+"""The board makes calls outside of any task. Their callers can be cancelled meanwhile."""
 
 import asyncio
 import contextlib
@@ -38,7 +38,7 @@ def test_a_call_whose_caller_was_cancelled_still_ends_quietly(work: Callable[[],
             return work()
 
         asking = asyncio.create_task(_outside_of_any_task(call))
-        if not by_the_call:  # after the caller has asked for the call, and before the call
+        if not by_the_call:  # after the caller has requested the call, and before the call is made
             asyncio.get_running_loop().call_soon(asking.cancel)
         await passing(1)
         with contextlib.suppress(asyncio.CancelledError):

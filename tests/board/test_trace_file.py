@@ -1,4 +1,4 @@
-"""Trace files: reading one gives what was written, and an error message says where a file is wrong."""
+"""Reading a trace file gives the records that were written. A message says where a file is wrong."""
 
 import dataclasses
 import json
@@ -134,14 +134,14 @@ def simulated() -> rs.Policy:
         return sim.context.policy
 
 
-def test_a_trace_may_begin_with_a_byte_order_mark(tmp_path: Path) -> None:
+def test_a_trace_file_can_begin_with_a_byte_order_mark(tmp_path: Path) -> None:
     recorded(tmp_path / "trace.json")
     assert read_trace(b"\xef\xbb\xbf" + (tmp_path / "trace.json").read_bytes()).title == "Elske"
     with pytest.raises(ValueError, match="it is not JSON"):
         read_trace(b'{"format": "\xff"}')
 
 
-def test_the_message_for_a_missing_or_broken_file_has_its_name(tmp_path: Path) -> None:
+def test_the_message_for_a_missing_or_broken_file_names_the_file(tmp_path: Path) -> None:
     with pytest.raises(PlatformError, match=r"cannot read .*gone\.json: No such file"):
         open_trace(tmp_path / "gone.json")
     (tmp_path / "bad.json").write_text("no", "utf-8")

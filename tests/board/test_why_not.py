@@ -86,7 +86,7 @@ def test_a_rule_that_fired_is_reported_as_fired(stage: Stage) -> None:
     ]  # fmt: skip
 
 
-def test_a_rule_was_ready_but_a_better_rule_answered(stage: Stage) -> None:
+def test_why_not_says_that_a_better_rule_answered(stage: Stage) -> None:
     conversation(stage, is_question=True, slow=2.0)
     with stage.run() as sim:
         sim.put(stage.input, "?")
@@ -102,7 +102,7 @@ def test_a_rule_was_ready_but_a_better_rule_answered(stage: Stage) -> None:
     assert ("demo:qa",) in [moment.rules for moment in found.moments]
 
 
-def test_a_rule_lacked_a_signal_that_no_rule_raised_for_its_cause(stage: Stage) -> None:
+def test_why_not_says_that_no_rule_raised_a_signal_for_this_cause(stage: Stage) -> None:
     conversation(stage, is_question=False)
     with stage.run() as sim:
         sim.put(stage.input, "hello")
@@ -115,7 +115,7 @@ def test_a_rule_lacked_a_signal_that_no_rule_raised_for_its_cause(stage: Stage) 
     assert raiser.words == "demo:classify finished without raising it, at 0.000 s"
 
 
-def test_a_rule_lost_one_of_its_spikes_and_lacks_that_signal_again(stage: Stage) -> None:
+def test_why_not_says_which_signal_a_rule_lacks_again_after_it_lost_a_spike(stage: Stage) -> None:
     @stage.module.rule(when=stage.input.changed & stage.touch.max_age(60), writes=stage.output)
     async def both(ctx: rs.RuleContext) -> None:
         ctx[stage.output] = "both"
@@ -137,7 +137,7 @@ def test_a_rule_lost_one_of_its_spikes_and_lacks_that_signal_again(stage: Stage)
     assert "it has demo:touch and still lacks demo:input:changed" in str(found)
 
 
-def test_a_rule_resigned(stage: Stage) -> None:
+def test_why_not_says_that_the_rule_resigned_with_its_reason(stage: Stage) -> None:
     conversation(stage, is_question=True, resigns=True)
     with stage.run() as sim:
         sim.put(stage.input, "?")
@@ -147,7 +147,7 @@ def test_a_rule_resigned(stage: Stage) -> None:
     assert other.verdict == "fired"
 
 
-def test_a_rule_failed_before_and_after_a_write(stage: Stage) -> None:
+def test_why_not_says_whether_a_rule_failed_before_or_after_its_write(stage: Stage) -> None:
     @stage.module.rule(when=stage.input.changed, writes=stage.output)
     async def early(ctx: rs.RuleContext) -> None:
         raise ValueError("no such word")
@@ -167,7 +167,7 @@ def test_a_rule_failed_before_and_after_a_write(stage: Stage) -> None:
     assert "failed after its write" in second.words
 
 
-def test_a_rule_never_took_the_spike_because_the_payload_did_not_fit(stage: Stage) -> None:
+def test_why_not_says_that_the_payload_did_not_fit(stage: Stage) -> None:
     @stage.module.rule(when=stage.input.changed.where(str.isupper), writes=stage.output)
     async def shout(ctx: rs.RuleContext) -> None: ...
 
@@ -178,7 +178,7 @@ def test_a_rule_never_took_the_spike_because_the_payload_did_not_fit(stage: Stag
     assert found.words == "it did not take demo:input:changed: its payload did not match the predicate"
 
 
-def test_a_rule_never_took_the_spike_because_another_rule_had_answered_its_cause(stage: Stage) -> None:
+def test_why_not_names_the_rule_that_had_already_answered_the_cause(stage: Stage) -> None:
     later = stage.module.signal("later")
 
     @stage.module.rule(when=stage.input.changed, writes=stage.output)
@@ -237,7 +237,7 @@ def test_a_detached_rule_does_not_count_as_the_answer_to_the_cause(stage: Stage,
     assert found.words == "it did not take demo:later: demo:answer had already answered this cause"
 
 
-def test_the_answering_rule_is_right_even_if_causes_merge_later(stage: Stage) -> None:
+def test_why_not_names_the_right_rule_even_if_causes_merge_later(stage: Stage) -> None:
     other, late = stage.module.slot("other", ""), stage.module.signal("late")
 
     @stage.module.rule(when=stage.touch, writes=stage.output)
@@ -269,7 +269,7 @@ def test_the_answering_rule_is_right_even_if_causes_merge_later(stage: Stage) ->
     assert found.words == "it did not take demo:late: demo:second had already answered this cause"
 
 
-def test_a_rule_was_among_its_own_causes(stage: Stage) -> None:
+def test_why_not_says_that_the_rule_itself_was_among_the_causes_of_a_spike(stage: Stage) -> None:
     @stage.module.rule(when=stage.input.changed | stage.output.changed, writes=stage.output)
     async def echo(ctx: rs.RuleContext) -> None:
         ctx[stage.output] = "echo"
@@ -283,7 +283,7 @@ def test_a_rule_was_among_its_own_causes(stage: Stage) -> None:
     ]
 
 
-def test_a_rule_lacked_an_input_until_its_spike_was_too_old(stage: Stage) -> None:
+def test_why_not_says_that_an_input_did_not_arrive_before_a_spike_was_too_old(stage: Stage) -> None:
     @stage.module.rule(when=stage.input.changed & stage.touch)
     async def both(ctx: rs.RuleContext) -> None: ...
 
@@ -301,7 +301,7 @@ def test_a_rule_lacked_an_input_until_its_spike_was_too_old(stage: Stage) -> Non
     assert found.missing[0].words == "demo:touch is an input and did not arrive"
 
 
-def test_the_explanation_of_a_missing_input_names_the_rules_that_may_raise_it(stage: Stage) -> None:
+def test_why_not_names_the_rules_that_can_raise_a_missing_input(stage: Stage) -> None:
     rung = stage.module.signal("rung", input=True)
 
     @stage.module.rule(when=stage.touch, emits=rung)
@@ -318,7 +318,7 @@ def test_the_explanation_of_a_missing_input_names_the_rules_that_may_raise_it(st
     assert [raiser.rule for raiser in missing.raisers] == ["demo:ring"]
 
 
-def test_the_patience_of_a_rule_ran_out_while_another_rule_waited(stage: Stage) -> None:
+def test_why_not_says_that_the_patience_ran_out_while_another_rule_waited(stage: Stage) -> None:
     @stage.module.rule(when=stage.input.changed & stage.touch, writes=stage.output)
     async def fused(ctx: rs.RuleContext) -> None: ...
 
@@ -340,7 +340,7 @@ def test_the_patience_of_a_rule_ran_out_while_another_rule_waited(stage: Stage) 
     )
 
 
-def test_a_predicate_on_a_slot_was_false(stage: Stage) -> None:
+def test_why_not_says_that_a_predicate_on_a_slot_was_false(stage: Stage) -> None:
     awake = stage.module.flag("awake")
 
     @stage.module.rule(when=stage.input.changed & awake.holds(bool))
@@ -355,7 +355,7 @@ def test_a_predicate_on_a_slot_was_false(stage: Stage) -> None:
     assert found.words.startswith("it had all its spikes, but demo:awake.holds(bool) was false")
 
 
-def test_a_false_predicate_is_distinguished_from_a_better_rule(stage: Stage) -> None:
+def test_why_not_blames_a_false_predicate_even_if_another_rule_answered(stage: Stage) -> None:
     awake = stage.module.flag("awake")
 
     @stage.module.rule(when=stage.input.changed & awake.holds(bool), writes=stage.output)
@@ -374,7 +374,7 @@ def test_a_false_predicate_is_distinguished_from_a_better_rule(stage: Stage) -> 
     assert "demo:plain answered this cause" in found.words
 
 
-def test_the_spike_of_a_rule_was_too_young(stage: Stage) -> None:
+def test_why_not_says_that_a_spike_was_too_young(stage: Stage) -> None:
     @stage.module.rule(when=stage.input.changed.min_age(3.0), writes=stage.output)
     async def slow(ctx: rs.RuleContext) -> None: ...
 
@@ -389,7 +389,7 @@ def test_the_spike_of_a_rule_was_too_young(stage: Stage) -> None:
     assert "demo:input:changed must be 3 s old, so the rule could not run before 3.000 s" in found.words
 
 
-def test_the_answering_rule_is_named_together_with_the_rule_before_it(stage: Stage) -> None:
+def test_why_not_names_the_answering_rule_together_with_the_rule_before_it(stage: Stage) -> None:
     conversation(stage, is_question=True, slow=2.0)
     with stage.run() as sim:
         sim.put(stage.input, "?")
@@ -399,7 +399,7 @@ def test_the_answering_rule_is_named_together_with_the_rule_before_it(stage: Sta
     assert found.moments[-1].rules == ("demo:qa",)
 
 
-def test_repeated_waits_appear_once(stage: Stage) -> None:
+def test_why_not_mentions_repeated_waits_only_once(stage: Stage) -> None:
     @stage.module.rule(when=stage.input.changed, emits=stage.touch)
     async def notice(ctx: rs.RuleContext) -> None:
         await ctx.sleep(1)
@@ -414,7 +414,7 @@ def test_repeated_waits_appear_once(stage: Stage) -> None:
     assert len(words) == len(set(words))
 
 
-def test_a_rule_had_retired(stage: Stage) -> None:
+def test_why_not_says_that_the_rule_had_retired(stage: Stage) -> None:
     @stage.module.rule(when=stage.input.changed)
     async def once(ctx: rs.RuleContext) -> rs.Retire:
         return rs.Retire()
@@ -428,7 +428,7 @@ def test_a_rule_had_retired(stage: Stage) -> None:
     assert (second.verdict, second.words) == ("retired", "it had already retired, at 0.000 s")
 
 
-def test_the_spike_of_a_rule_was_withdrawn(stage: Stage) -> None:
+def test_why_not_says_that_a_spike_was_withdrawn(stage: Stage) -> None:
     @stage.module.rule(when=stage.input.changed & stage.touch)
     async def both(ctx: rs.RuleContext) -> None: ...
 
@@ -440,7 +440,7 @@ def test_the_spike_of_a_rule_was_withdrawn(stage: Stage) -> None:
     assert found.words == "demo:input:changed was withdrawn at 0.000 s: it was wiped"
 
 
-def test_a_rule_waited_for_a_slot_that_was_taken(stage: Stage) -> None:
+def test_why_not_names_the_rule_that_had_taken_the_slot(stage: Stage) -> None:
     @stage.module.rule(when=stage.input.changed, writes=stage.output, weight=2)
     async def long(ctx: rs.RuleContext) -> None:
         await ctx.sleep(3)
@@ -461,7 +461,7 @@ def test_a_rule_waited_for_a_slot_that_was_taken(stage: Stage) -> None:
     assert found.words.endswith("demo:long answered at 3.000 s")
 
 
-def test_the_first_declared_of_equal_rules_answers(stage: Stage) -> None:
+def test_why_not_names_the_rule_declared_first_among_equal_rules(stage: Stage) -> None:
     @stage.module.rule(when=stage.input.changed, writes=stage.output)
     async def first(ctx: rs.RuleContext) -> None:
         await asyncio.sleep(0)
@@ -489,7 +489,7 @@ def test_why_not_can_be_asked_about_a_later_input(stage: Stage) -> None:
     assert all(moment.time == 1.0 for moment in found.moments)
 
 
-def test_a_signal_that_only_another_cause_raised_is_reported_as_such(stage: Stage) -> None:
+def test_why_not_says_that_a_signal_occurred_only_for_another_cause(stage: Stage) -> None:
     question = stage.module.signal("question")
 
     @stage.module.rule(when=stage.input.changed.where(lambda text: "?" in text), emits=question)
@@ -567,7 +567,7 @@ def test_an_explanation_from_an_incomplete_trace_says_that_it_is_incomplete(stag
 
 
 def shut_while_waiting(stage: Stage) -> rs.Slot[bool]:
-    """Declare two rules and return the slot of a predicate. The rule with the predicate waits for a better rule."""
+    """Declare a rule with a predicate on a slot, and a better rule for which it waits. Return the slot."""
     lit = stage.module.slot("lit", True)
 
     @stage.module.rule(when=stage.input.changed & lit.holds(bool), writes=stage.output)
@@ -601,7 +601,7 @@ def test_a_rule_whose_predicate_became_false_during_a_wait_is_reported_as_gated(
     assert found.words.endswith(
         "nats ahead); then demo:lit.holds(bool) was false; demo:input:changed reached its maximum age of 5 s at 5.000 s"
     )
-    assert unseen.verdict == "gated"  # without functions for the predicates, as in a recording
+    assert unseen.verdict == "gated"  # like a recording, this description does not contain the functions of predicates
 
 
 def test_a_waiting_rule_that_lost_while_its_predicate_was_false_is_reported_as_gated(stage: Stage) -> None:
@@ -622,7 +622,7 @@ def test_a_waiting_rule_that_lost_while_its_predicate_was_false_is_reported_as_g
     assert "then demo:lit.holds(bool) was false; demo:plain answered this cause at 1.000 s" in found.words
 
 
-def test_a_wait_with_a_true_predicate_names_the_rivals(stage: Stage) -> None:
+def test_a_waiting_rule_whose_predicate_is_true_is_reported_as_waiting(stage: Stage) -> None:
     shut_while_waiting(stage)
     with stage.run() as sim:
         sim.put(stage.input, "x")
@@ -632,7 +632,7 @@ def test_a_wait_with_a_true_predicate_names_the_rivals(stage: Stage) -> None:
         assert ask(sim, "gated").verdict == "outrun"
 
 
-def test_the_explanation_does_not_name_a_rule_that_ran_for_another_cause(stage: Stage) -> None:
+def test_why_not_does_not_name_a_rule_that_ran_for_another_cause(stage: Stage) -> None:
     boot, ready = stage.module.signal("boot"), stage.module.signal("ready")
 
     @stage.module.rule(when=boot, emits=ready)
@@ -681,7 +681,7 @@ def two_runs(stage: Stage) -> None:
     async def talk(ctx: rs.RuleContext) -> None: ...
 
 
-def test_the_explanation_names_the_run_that_answered_and_not_the_one_that_resigned(stage: Stage) -> None:
+def test_why_not_names_the_run_that_answered_and_not_the_run_that_resigned(stage: Stage) -> None:
     two_runs(stage)
     with stage.run() as sim:
         sim.put(stage.input, "x")
@@ -694,7 +694,7 @@ def test_the_explanation_names_the_run_that_answered_and_not_the_one_that_resign
     assert "demo:second" not in str(found)
 
 
-def test_from_an_older_trace_without_run_numbers_only_the_rule_is_named(stage: Stage) -> None:
+def test_for_an_older_trace_without_run_numbers_why_not_names_only_the_rule(stage: Stage) -> None:
     two_runs(stage)
     with stage.run() as sim:
         sim.put(stage.input, "x")
@@ -748,8 +748,8 @@ def steps(work: Callable[[], object]) -> int:
     return count
 
 
-@pytest.mark.parametrize("slow", [0.0, 1.0], ids=["loses at once", "waits first"])
-def test_the_work_grows_only_in_proportion_to_the_history(slow: float) -> None:
+@pytest.mark.parametrize("slow", [0.0, 1.0], ids=["loses immediately", "waits first"])
+def test_the_work_of_why_not_grows_only_in_proportion_to_the_history(slow: float) -> None:
     def cost(ticks: int) -> int:
         stage = Stage()
         with many(stage, ticks, slow) as sim:

@@ -16,7 +16,7 @@ ROOT = Path(__file__).parents[2]
 CASES = Path(__file__).with_name("cases")
 
 Failures = dict[str, list[str]]
-"""Key: the name of a test function; value: a message for each of its runs, empty if the run passed."""
+"""For the name of each test function: a message for each of its runs, which is empty if the run passed."""
 
 
 def names_in(name: str) -> list[str]:

@@ -270,7 +270,7 @@ def test_a_later_output_completes_the_utterance_of_its_pieces(whole: str) -> Non
     converse(talk, writer)
 
 
-def test_ending_at_once_does_not_wait_for_utterances() -> None:
+def test_ending_immediately_does_not_wait_for_utterances() -> None:
     async def talk(conversation: Conversation, spoken: list[Utterance]) -> None:
         conversation.hear("count")
         await conversation.end(at_once=True)

@@ -19,7 +19,7 @@ Capture = pytest.CaptureFixture[str]
 
 
 def run(capsys: Capture, *arguments: str) -> str:
-    """Run an agent that ends by itself; return its output."""
+    """Run an agent that ends by itself, and return its output."""
     code, out, errors = call(capsys, "run", *arguments)
     assert (code, errors) == (0, "")
     return out
@@ -197,7 +197,7 @@ def test_paths_in_an_agent_file_are_relative_to_the_file(folder: Path, capsys: C
     assert run(capsys, "deep/agent.yaml", "--seed", "4") != first
 
 
-def test_an_agent_file_and_modules_may_be_combined(folder: Path, capsys: Capture) -> None:
+def test_an_agent_file_and_modules_can_be_combined(folder: Path, capsys: Capture) -> None:
     write(folder / "hello.py", HELLO)
     write(folder / "settings.yml", "settings: {hello: {greeting: Ahoy}}")
     assert run(capsys, "./hello.py", "-f", "settings.yml").startswith("Ahoy")
@@ -205,7 +205,7 @@ def test_an_agent_file_and_modules_may_be_combined(folder: Path, capsys: Capture
     assert "name a module, or an agent file that names modules" in refused(capsys)
 
 
-def test_an_agent_file_may_take_secrets_from_environment_variables(
+def test_an_agent_file_can_take_secrets_from_environment_variables(
     folder: Path, capsys: Capture, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     write(folder / "hello.py", HELLO)
@@ -260,7 +260,7 @@ def test_a_wrong_agent_file_is_refused_with_a_message(content: str, text: str, f
     ids=["aliases", "nesting"],
 )
 @pytest.mark.parametrize("command", ["run", "check", "graph"])
-def test_an_agent_file_that_expands_without_limit_is_refused_at_once(
+def test_an_agent_file_that_expands_without_limit_is_refused_immediately(
     command: str, content: str, text: str, folder: Path, capsys: Capture
 ) -> None:
     (folder / "agent.yaml").write_text(content, encoding="utf-8")
@@ -279,7 +279,7 @@ def test_check_and_graph_first_name_the_python_files_that_an_agent_file_runs(fol
         code, _, errors = call(capsys, command, "deep/agent.yaml")
         said = f"ravestate {command}: deep/agent.yaml runs Python code: {Path('deep/hello.py')}, other\n"
         assert (code, errors) == (0, said)
-    assert run(capsys, "deep/agent.yaml").startswith("Hello")  # `run` also checks that nothing is on stderr
+    assert run(capsys, "deep/agent.yaml").startswith("Hello")  # `run` also checks that there is no error output
 
 
 def test_check_names_no_python_files_if_the_agent_file_has_only_built_in_modules(folder: Path, capsys: Capture) -> None:

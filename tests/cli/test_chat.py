@@ -1,4 +1,4 @@
-"""``ravestate chat``: the complete agent on the console, and through pipes."""
+"""``ravestate chat`` runs the complete agent on the console or through pipes."""
 
 import argparse
 import subprocess
@@ -22,7 +22,7 @@ Capture = pytest.CaptureFixture[str]
 
 @pytest.fixture
 def started(monkeypatch: pytest.MonkeyPatch) -> list[tuple[list[str], dict[str, Any]]]:
-    """The runs that the command starts, each as the names of its modules and its options."""
+    """A list of the runs that the command starts: the names of their modules, and their options."""
     seen: list[tuple[list[str], dict[str, Any]]] = []
 
     def run(*modules: Any, **options: Any) -> None:
@@ -66,7 +66,7 @@ def test_the_option_without_refuses_an_unknown_module(started: Any, capsys: Capt
 
 
 @pytest.mark.parametrize("command", ["chat", "board"])
-def test_the_help_names_the_file_of_the_memory(
+def test_the_help_says_in_which_file_memory_is(
     command: str, tmp_path: Path, capsys: Capture, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     monkeypatch.setattr(sys, "platform", "linux")
@@ -91,7 +91,7 @@ def test_help_works_for_a_user_without_a_home_folder(capsys: Capture, monkeypatc
     assert call(capsys, "chat", "--help")[0] == 0
 
 
-def test_chat_may_be_called_without_modules() -> None:
+def test_chat_can_be_called_without_modules() -> None:
     parser = argparse.ArgumentParser()
     chat.add_arguments(parser)
     assert parser.parse_args([]).modules == []

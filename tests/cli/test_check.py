@@ -99,7 +99,7 @@ def test_help_explains_the_exit_code(capsys: Capture) -> None:
     assert "Exit code 1: the agent has faults" in call(capsys, "check", "--help")[1]
 
 
-def test_check_prints_every_fault_at_once(folder: Path, capsys: Capture) -> None:
+def test_check_prints_all_faults_together(folder: Path, capsys: Capture) -> None:
     write(
         folder / "faulty.py",
         """

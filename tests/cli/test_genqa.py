@@ -69,7 +69,9 @@ def test_ask_says_why_there_is_no_answer(docs: Path, capsys: pytest.CaptureFixtu
     )
 
 
-def test_an_unreadable_file_is_named_and_sets_the_exit_code(docs: Path, capsys: pytest.CaptureFixture[str]) -> None:
+def test_a_message_names_an_unreadable_file_and_the_exit_code_is_1(
+    docs: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
     (docs / "latin.txt").write_bytes(b"caf\xe9")
     (docs / "broken.pdf").write_bytes(b"%PDF-1.4")
     code, out, errors = call(capsys, "genqa", "index", "docs", "nowhere")
@@ -110,7 +112,7 @@ def test_an_option_or_a_variable_names_the_index_file(
     assert "engine.txt" in call(capsys, "genqa", "list")[1]
 
 
-def test_the_option_for_the_index_may_also_follow_the_action(docs: Path, capsys: pytest.CaptureFixture[str]) -> None:
+def test_the_option_for_the_index_can_also_follow_the_action(docs: Path, capsys: pytest.CaptureFixture[str]) -> None:
     call(capsys, "genqa", "index", "docs", "--index", "my.sqlite")
     assert (docs.parent / "my.sqlite").exists()
     before = call(capsys, "genqa", "--index", "my.sqlite", "list")
@@ -123,7 +125,7 @@ def test_the_option_for_the_index_may_also_follow_the_action(docs: Path, capsys:
 @pytest.mark.parametrize(
     "action", [["list"], ["index", "docs"], ["forget", "docs"], ["ask", "What is the capital of Peru?"]]
 )
-def test_a_file_that_is_no_index_is_refused_with_a_message(
+def test_a_file_that_is_not_an_index_is_refused_with_a_message(
     docs: Path, capsys: pytest.CaptureFixture[str], action: list[str]
 ) -> None:
     (docs / "index.txt").write_text("This is a letter and no index of anything.", encoding="utf-8")

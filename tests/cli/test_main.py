@@ -1,4 +1,4 @@
-"""The command line as a whole: help, exit codes, no traceback for a user's mistake."""
+"""The whole command line: help and exit codes. A user's mistake never gives a traceback."""
 
 import re
 import subprocess
@@ -58,12 +58,12 @@ def test_a_misspelt_command_has_a_hint(capsys: Capture) -> None:
     assert code == 2 and errors.endswith("error: there is no command 'chatt'; did you mean 'chat'?\n")
 
 
-def test_abbreviated_options_are_refused(capsys: Capture) -> None:
+def test_options_cannot_be_abbreviated(capsys: Capture) -> None:
     code, _, errors = call(capsys, "run", "idle", "--see", "1")
     assert code == 2 and "--see" in errors
 
 
-def test_modules_may_come_before_and_after_options(folder: Path, capsys: Capture) -> None:
+def test_modules_can_come_before_and_after_options(folder: Path, capsys: Capture) -> None:
     write(folder / "hello.py", HELLO)
     code, out, errors = call(capsys, "check", "idle", "--set", "idle.bored_after=9", "./hello.py", "fillers")
     assert (code, errors) == (0, "")
@@ -95,7 +95,7 @@ def test_wrong_use_of_a_command_shows_its_usage(
 
 
 @pytest.mark.parametrize("flags", [(), ("-v",), ("-vv",)])
-def test_the_flag_v_may_be_repeated(flags: tuple[str, ...], capsys: Capture) -> None:
+def test_the_flag_v_can_be_repeated(flags: tuple[str, ...], capsys: Capture) -> None:
     assert call(capsys, *flags, "check", "rawio")[0] == 0
 
 
@@ -109,7 +109,7 @@ def test_ctrl_c_gives_exit_code_130(monkeypatch: pytest.MonkeyPatch) -> None:
     assert main(["check", "rawio"]) == 130
 
 
-def test_a_closed_pipe_is_no_error(monkeypatch: pytest.MonkeyPatch) -> None:
+def test_a_closed_pipe_is_not_an_error(monkeypatch: pytest.MonkeyPatch) -> None:
     from ravestate.cli import check
 
     def broken(options: object) -> int:

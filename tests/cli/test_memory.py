@@ -36,7 +36,7 @@ HOLD = """
 
 @pytest.fixture
 def file(folder: Path) -> Path:
-    """A memory of Ada, who lives in London, of two Bobs, and of Eve, who likes one Bob."""
+    """A memory with Ada, who lives in London, two people named Bob, and Eve, who likes one of them."""
     path = folder / "memory.lbug"
     memory = open_memory(ontology.Settings(path=path))
     ada = memory.create("Person", name="Ada", born=date(1815, 12, 10)).result()
@@ -97,7 +97,7 @@ def test_load_restores_an_exported_memory(file: Path, folder: Path, capsys: Capt
     assert sorted(path.name for path in folder.iterdir()) == names
 
 
-def test_files_that_cannot_be_written_or_read_are_named(file: Path, folder: Path, capsys: Capture) -> None:
+def test_messages_name_files_that_cannot_be_written_or_read(file: Path, folder: Path, capsys: Capture) -> None:
     before = sorted(folder.iterdir())
     code, _, errors = call(capsys, "memory", "--path", str(file), "export", "no/where.json")
     assert code == 2 and "cannot write no/where.json: No such file" in errors
@@ -112,7 +112,7 @@ def test_files_that_cannot_be_written_or_read_are_named(file: Path, folder: Path
 
 
 @pytest.mark.parametrize("answer", ["n\n", "", "\n", "yess\n"])
-def test_forget_asks_first_and_forgets_nobody_without_a_yes(
+def test_forget_asks_first_and_forgets_no_person_without_a_yes(
     file: Path, capsys: Capture, monkeypatch: pytest.MonkeyPatch, answer: str
 ) -> None:
     monkeypatch.setattr(sys, "stdin", io.StringIO(answer))
@@ -175,7 +175,7 @@ def test_the_message_for_a_deleted_memory_names_the_files_that_remain(
     assert f"to remove them, run ravestate memory reset --path {file.resolve()}" in errors
 
 
-def test_only_the_user_may_read_an_export_even_if_a_temporary_file_was_readable(
+def test_an_export_is_readable_only_by_the_user_even_if_a_temporary_file_was_readable(
     file: Path, folder: Path, capsys: Capture
 ) -> None:
     left = folder / "all.json.new"
@@ -218,7 +218,7 @@ def test_memory_uses_the_settings_of_an_agent_file(file: Path, folder: Path, cap
     assert "also has Boat, but no file declares these types" in errors
 
 
-def test_the_options_for_the_file_may_also_follow_the_action(file: Path, folder: Path, capsys: Capture) -> None:
+def test_the_options_for_the_file_can_also_follow_the_action(file: Path, folder: Path, capsys: Capture) -> None:
     before = call(capsys, "memory", "--path", str(file), "list")
     assert before[0] == 0
     assert call(capsys, "memory", "list", "--path", str(file)) == before

@@ -1,4 +1,4 @@
-"""``ravestate nlp``: the analysis of a text."""
+"""``ravestate nlp`` prints the analysis of a text."""
 
 import io
 import json

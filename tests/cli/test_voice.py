@@ -123,7 +123,7 @@ def test_files_that_are_not_wav_files_are_refused_with_advice(folder: Path, caps
 
 
 def test_talk_leaves_out_other_platforms(folder: Path, capsys: pytest.CaptureFixture[str]) -> None:
-    """Here the console would end the agent at once, because its input is not a terminal."""
+    """The console would end the agent immediately, because its input is not a terminal."""
     (folder / "echo.py").write_text(STORYTELLER)
     (folder / "agent.yaml").write_text("modules: [conio, ./echo.py]\nsettings: {conio: {plain: true}}\n")
     wav(folder / "in.wav", track((0.5, "What do you think about the weather?"), length=3.0))
@@ -133,7 +133,7 @@ def test_talk_leaves_out_other_platforms(folder: Path, capsys: pytest.CaptureFix
 
 
 def test_ctrl_c_ends_a_conversation_cleanly(folder: Path) -> None:
-    """One rule waits for input in a thread, and so holds the virtual clock back until the signal arrives."""
+    """A rule that waits in a thread holds the virtual clock back until the operating-system signal arrives."""
     (folder / "slow.py").write_text(
         STORYTELLER
         + """

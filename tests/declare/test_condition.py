@@ -1,4 +1,4 @@
-"""The algebra of conditions: it builds values, and refuses code that would silently mean something else."""
+"""Conditions are built with operators and methods. Python code that would silently mean something else is refused."""
 
 import functools
 import re
@@ -42,11 +42,11 @@ def test_and_and_or_build_flat_trees_in_order() -> None:
         (a & mood.holds(cheerful), "demo:a & demo:mood.holds(cheerful)"),
     ],
 )
-def test_the_text_of_a_condition_is_its_code(condition: rs.Condition, text: str) -> None:
+def test_the_repr_of_a_condition_is_its_code(condition: rs.Condition, text: str) -> None:
     assert repr(condition) == text
 
 
-def test_chaining_makes_new_constraints_and_leaves_the_old_ones() -> None:
+def test_each_method_of_a_constraint_makes_a_new_constraint_and_leaves_the_old_one() -> None:
     young = a.min_age(1)
     old = young.min_age(3).max_age(None).detached()
     assert (young.min_age_, young.max_age_, young.is_detached) == (1.0, 5.0, False)
@@ -83,7 +83,7 @@ def test_only_conditions_can_be_combined(other: object) -> None:
         _ = a | other
 
 
-def test_the_message_about_a_slot_beside_a_condition_names_its_signal() -> None:
+def test_the_message_about_a_slot_combined_with_a_condition_names_its_signal() -> None:
     with pytest.raises(rs.DeclarationError, match=r"a slot is not a signal: write & mood\.changed"):
         _ = a & mood
     with pytest.raises(rs.DeclarationError, match=r"a slot is not a signal: write \| mood\.changed"):
@@ -109,7 +109,7 @@ def test_a_predicate_that_is_not_a_function_is_refused() -> None:
 
 
 class Asks:
-    """Predicates that are objects and methods."""
+    """An object that is itself a predicate, and whose methods can be predicates."""
 
     def __init__(self, word: str) -> None:
         self.word = word
@@ -150,8 +150,8 @@ async def both(value: object) -> AsyncIterator[bool]:
         functools.partial(functools.partial(AsksLater())),
     ],
 )
-def test_a_predicate_whose_call_only_makes_an_object_is_refused(predicate: object) -> None:
-    """A coroutine object is always true."""
+def test_a_coroutine_function_or_a_generator_function_is_refused_as_a_predicate(predicate: object) -> None:
+    """A coroutine object, for example, is always true."""
     with pytest.raises(
         rs.DeclarationError,
         match=rf"demo:a\.where\(.*\) \({HERE}:\d+\): .* always true: write a plain function of the payload",
@@ -167,7 +167,7 @@ def test_a_predicate_whose_call_only_makes_an_object_is_refused(predicate: objec
     "predicate",
     [cheerful, bool, str.isupper, Asks("x"), Asks("x").__call__, functools.partial(cheerful), re.Pattern],
 )
-def test_every_plain_callable_is_a_predicate(predicate: object) -> None:
+def test_every_plain_callable_can_be_a_predicate(predicate: object) -> None:
     assert a.where(predicate).predicates == (predicate,)
     assert mood.holds(predicate).predicate == predicate
 

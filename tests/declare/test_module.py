@@ -1,4 +1,4 @@
-"""Modules are values; every message about a mistake ends with the text to write instead."""
+"""A module is a value. Each message about a mistake ends with the text to write instead."""
 
 import functools
 import inspect
@@ -48,7 +48,7 @@ def test_a_module_holds_its_declarations_and_nothing_else(demo: rs.Module) -> No
     assert repr(demo) == "<module demo>"
 
 
-def test_every_declaration_knows_its_place(demo: rs.Module) -> None:
+def test_every_declaration_has_the_file_and_line_where_it_was_made(demo: rs.Module) -> None:
     for thing in (demo, demo.signal("a"), demo.slot("b"), demo.flag("c"), demo.collection("d")):
         assert re.fullmatch(f"{HERE}:[0-9]+", thing.origin)
     rule = demo.rule(when=demo.signal("go"))(do)
@@ -61,14 +61,14 @@ def test_a_rule_takes_one_or_many_slots_and_signals(demo: rs.Module) -> None:
     assert (rule.reads, rule.writes, rule.emits) == ((a,), (a, b), (x,))
 
 
-def test_a_rule_may_have_another_name_than_its_function(demo: rs.Module) -> None:
+def test_a_rule_can_have_another_name_than_its_function(demo: rs.Module) -> None:
     go = demo.signal("go")
     assert demo.rule(when=go)(do).name == "demo:do"
     assert demo.rule(when=go, name="other")(do).name == "demo:other"
     assert demo.rule(when=go, name="small")(lambda ctx: None).name == "demo:small"
 
 
-def test_numbers_become_floats_and_settings_stay(demo: rs.Module) -> None:
+def test_numbers_in_the_options_become_floats_and_references_to_settings_stay(demo: rs.Module) -> None:
     rule = demo.rule(when=demo.signal("go"), weight=2, cooldown=Options.late, patience=0, timeout=1)(do)
     assert (rule.weight, rule.cooldown, rule.patience, rule.timeout) == (2.0, Options.late, 0.0, 1.0)
     assert type(rule.weight) is float and type(rule.timeout) is float
@@ -83,7 +83,7 @@ def python_module(**contents: object) -> types.ModuleType:
     return found
 
 
-def test_a_python_module_stands_for_its_module(demo: rs.Module) -> None:
+def test_a_python_module_can_be_used_in_place_of_its_module(demo: rs.Module) -> None:
     other = rs.Module("other")
     assert as_module(python_module(module=demo, other=other)) is demo
     assert as_module(python_module(demo=demo, again=demo)) is demo
@@ -132,7 +132,7 @@ def test_settings_that_are_not_a_settings_class_are_refused(settings: Any) -> No
 
 
 @pytest.mark.parametrize("declare", ["signal", "slot", "flag", "collection"])
-def test_keep_and_limit_are_checked(declare: str, demo: rs.Module) -> None:
+def test_wrong_values_of_keep_and_limit_are_refused(declare: str, demo: rs.Module) -> None:
     make = getattr(demo, declare)
     refused("demo:x: keep='last': write keep='all' or keep='latest'", lambda: make("x", keep="last"))
     refused("demo:x: limit=0: write a whole number of at least 1", lambda: make("x", limit=0))
@@ -178,7 +178,7 @@ def test_a_value_that_is_not_a_function_cannot_become_a_rule(demo: rs.Module) ->
 
 
 @pytest.mark.parametrize("function", [lambda ctx: None, functools.partial(do)])
-def test_a_function_without_a_name_needs_one(function: Any, demo: rs.Module) -> None:
+def test_a_rule_whose_function_has_no_name_must_be_given_one(function: Any, demo: rs.Module) -> None:
     refused("has no name of its own: write name='...'", lambda: demo.rule(when=demo.signal("go"))(function))
     assert demo.rule(when=demo.signal("go2"), name="named")(function).name == "demo:named"
 

@@ -1,4 +1,4 @@
-"""The outcomes that a rule may return or raise."""
+"""The outcomes that a rule can return or raise."""
 
 import pytest
 

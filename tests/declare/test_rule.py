@@ -25,7 +25,7 @@ def test_calling_a_rule_calls_its_function() -> None:
     assert asyncio.run(triple(4)) == 12
 
 
-def test_a_rule_looks_like_its_function() -> None:
+def test_a_rule_has_the_name_the_docstring_and_the_signature_of_its_function() -> None:
     assert inspect.unwrap(double) is double.function
     assert inspect.getdoc(double) == "Return twice the argument."
     assert list(inspect.signature(double).parameters) == ["ctx"]
@@ -35,7 +35,7 @@ def test_the_repr_of_a_rule_is_its_name() -> None:
     assert repr(double) == "<rule demo:double>"
 
 
-def test_the_defaults_are_those_of_the_laws() -> None:
+def test_the_options_of_a_rule_have_the_defaults_from_the_laws() -> None:
     assert (double.weight, double.cooldown, double.patience, double.timeout) == (1.0, 0.0, None, None)
     assert (double.until, double.detached, double.background) == (None, False, False)
     assert (double.reads, double.writes, double.emits) == ((), (), ())

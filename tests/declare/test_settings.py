@@ -8,7 +8,7 @@ class Owner:
     pass
 
 
-def test_a_reference_has_a_name_and_perhaps_a_class() -> None:
+def test_a_reference_to_a_setting_has_a_name_and_optionally_a_class() -> None:
     assert rs.setting("late") == SettingRef("late")
     assert rs.setting("late") != SettingRef("late", Owner)
     assert repr(rs.setting("late")) == "setting('late')"

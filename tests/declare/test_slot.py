@@ -1,4 +1,4 @@
-"""Slots and their signals (L2), and the messages for a slot in the place of a signal."""
+"""Slots and their signals (L2), and the messages about a slot that is used as a signal."""
 
 import copy
 import re
@@ -15,7 +15,7 @@ lit = demo.flag("lit")
 people = demo.collection("people")
 
 
-def test_each_kind_of_slot_has_signals_of_its_own() -> None:
+def test_each_kind_of_slot_has_its_own_signals() -> None:
     assert [s.name for s in mood.signals] == ["demo:mood:changed"]
     assert [s.name for s in lit.signals] == ["demo:lit:changed", "demo:lit:true", "demo:lit:false"]
     assert [s.name for s in people.signals] == [
@@ -63,7 +63,7 @@ def test_a_slot_with_a_type_refuses_values_of_other_types(default: Any, kind: An
 
 
 @pytest.mark.parametrize("kind", [None, Any, list[int], "str"])
-def test_unknown_types_are_not_checked(kind: Any) -> None:
+def test_values_for_a_type_that_isinstance_cannot_check_are_accepted(kind: Any) -> None:
     demo.slot("s", type=kind).check(object(), "the writer")
     with pytest.raises(TypeError):
         NOTHING["key"] = 1
@@ -94,7 +94,7 @@ def test_the_message_about_a_misspelt_signal_of_a_slot_names_the_nearest(
         getattr(slot, attribute)
 
 
-def test_a_slot_is_not_a_condition() -> None:
+def test_a_slot_cannot_be_used_as_a_condition() -> None:
     signal = demo.signal("go")
     for combine in (lambda: mood & signal, lambda: mood | signal, lambda: mood & lit, lambda: True & mood):
         with pytest.raises(rs.DeclarationError, match=r"write \.changed \(its signal\) or \.holds\(predicate\)"):

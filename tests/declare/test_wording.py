@@ -1,4 +1,4 @@
-"""The wording of messages: names as code, the line of the mistake, short values."""
+"""Messages write names as code, name the line of the mistake, and shorten long values."""
 
 import pytest
 
@@ -28,19 +28,19 @@ def test_the_place_of_a_call_is_in_the_designers_file() -> None:
 
 
 class Shy:
-    """A value whose own code fails."""
+    """A value whose `repr` fails."""
 
     def __repr__(self) -> str:
         raise RuntimeError
 
 
-def test_a_long_value_is_cut() -> None:
+def test_a_long_value_is_shortened() -> None:
     assert short("x" * 100) == "'" + "x" * 56 + "..."
     assert cut("x" * 60) == "x" * 60
     assert short(Shy()) == "<Shy without a repr>"
 
 
 def test_a_slot_refuses_a_value_without_a_repr() -> None:
-    """A `repr` that raises must not replace the message."""
+    """The exception from the `repr` must not replace the message."""
     with pytest.raises(rs.RuleError, match="the rule wrote <Shy without a repr> to m:mood, which takes str"):
         rs.Module("m").slot("mood", "", type=str).check(Shy(), "the rule")

@@ -1,3 +1,5 @@
+"""Reversing a few edges makes a graph acyclic. Weak edges are reversed rather than strong edges."""
+
 from hypothesis import given
 from hypothesis import strategies as st
 

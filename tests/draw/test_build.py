@@ -1,3 +1,5 @@
+"""A diagram is built from rules: nodes for rules, signals and slots, and edges for what the rules declare."""
+
 from draw.examples import games, prompting, rule
 from ravestate.declare.module import Module
 from ravestate.declare.settings import setting
@@ -110,7 +112,7 @@ def test_the_note_of_a_rule_lists_its_options() -> None:
     assert notes == {"r": "×1.2, cooldown 30 s, detached, background", "s": ""}
 
 
-def test_a_rule_and_a_signal_may_share_a_name() -> None:
+def test_a_rule_and_a_signal_can_have_the_same_name() -> None:
     module = Module("m")
     a = module.signal("a")
     rule(module, "a", a)

@@ -1,3 +1,5 @@
+"""Coordinates keep the vertices of a layer apart, and make long lines straight."""
+
 from itertools import pairwise
 
 from hypothesis import given

@@ -1,3 +1,5 @@
+"""The order of the vertices in their layers is chosen so that few lines cross."""
+
 from hypothesis import given
 from hypothesis import strategies as st
 

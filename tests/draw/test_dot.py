@@ -1,3 +1,5 @@
+"""The diagram as text for Graphviz: valid syntax, and the style of each kind of edge."""
+
 import re
 
 from hypothesis import given

@@ -1,3 +1,5 @@
+"""`policy.diagram` draws a policy in each format."""
+
 import pytest
 
 from draw.examples import games, rule

@@ -1,3 +1,5 @@
+"""Folding makes each module one node."""
+
 from draw.examples import games, prompting
 from ravestate.draw.build import build
 from ravestate.draw.fold import fold

@@ -1,3 +1,5 @@
+"""A diagram refuses impossible nodes and edges."""
+
 import pytest
 
 from ravestate.draw.graph import Diagram, Edge, Node

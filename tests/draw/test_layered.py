@@ -1,3 +1,5 @@
+"""Lines and labels get their own vertices in the layers that they pass."""
+
 from ravestate.draw.layered import Link, proper_layering
 
 

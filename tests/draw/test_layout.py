@@ -1,3 +1,5 @@
+"""In a layout, nothing overlaps, and each line joins its nodes."""
+
 from itertools import combinations, pairwise
 
 import pytest

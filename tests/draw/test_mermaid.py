@@ -1,3 +1,5 @@
+"""The diagram as text for Mermaid: valid syntax, and labels for kinds without an arrow."""
+
 import re
 
 from hypothesis import given

@@ -1,3 +1,5 @@
+"""Layers are assigned so that the total length of the arcs is minimal."""
+
 from itertools import product
 
 import pytest

@@ -1,3 +1,5 @@
+"""The diagram as SVG: a well-formed document that is accessible, repeatable and explained by a legend."""
+
 import os
 import re
 import subprocess

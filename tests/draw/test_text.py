@@ -1,3 +1,5 @@
+"""The width of a text is estimated, long texts are shortened, and odd characters are replaced."""
+
 import pytest
 from hypothesis import given
 from hypothesis import strategies as st

@@ -1,3 +1,5 @@
+"""Vertical lines between two layers get tracks so that different lines do not touch."""
+
 from itertools import combinations
 
 from hypothesis import given

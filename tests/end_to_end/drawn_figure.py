@@ -1,4 +1,4 @@
-"""Draw a figure with a face as a video. The documentation shows it, because it must not show a photo of a person.
+"""Draw a figure with a face as a video. The documentation shows this figure instead of a photo of a person.
 
     python drawn_figure.py FILE.mjpeg
 

@@ -24,7 +24,7 @@ from ravestate.runtime.agent import Agent
 __all__ = ["PHONE", "Host", "Stage", "hide", "on_stage"]
 
 LIMIT = 180
-"""A test fails after this many seconds."""
+"""The time after which a test fails (seconds)."""
 
 expect.set_options(timeout=30_000)  # milliseconds; long, so that the tests also pass on a slow machine
 
@@ -78,7 +78,7 @@ class Host:
 
     @contextlib.contextmanager
     def away(self) -> Iterator[None]:
-        """Within the ``with`` block, no client is connected: lose all connections, and refuse new ones."""
+        """Lose all connections, and refuse new connections until the ``with`` block ends."""
         access = self.app.state.access
         access.refusal = lambda headers: "away"
         self.drop()

@@ -57,7 +57,7 @@ async def test_the_name_that_a_stranger_tells_appears_at_their_face_and_on_the_b
         "webio": {"port": 0, "title": "Elske"},
         "ontology": {"path": str(tmp_path / "memory.lbug")},
         "idle": {"bored_after": 1e6},
-        "visionio": {"fps": 5, "gone_after": 60},  # on a busy machine, no picture may arrive for seconds
+        "visionio": {"fps": 5, "gone_after": 60},  # on a busy machine, a picture can take seconds to arrive
     }
     agent = RecordedAgent(webio, hibye, persqa, visionio, settings=settings)
     async with (
@@ -101,7 +101,7 @@ async def test_the_pictures_in_the_documentation_can_be_taken(stage: Stage, tmp_
         "ontology": {"path": str(tmp_path / "memory.lbug")},
         "idle": {"bored_after": 1e6},
         "emotion": {"emoji": False},
-        "visionio": {"fps": 5, "gone_after": 60},  # on a busy machine, no picture may arrive for seconds
+        "visionio": {"fps": 5, "gone_after": 60},  # on a busy machine, a picture can take seconds to arrive
     }
     agent = RecordedAgent(webio, hibye, persqa, charades, visionio, settings=settings)
     async with (

@@ -59,7 +59,7 @@ async def test_the_agent_learns_that_the_visitor_is_writing_but_not_at_each_key(
         await page.keyboard.press("Enter")
         await expect(log(page)).to_contain_text(f"You said: {text}")
         told = await log(page).get_by_text("You are writing.").count()
-        assert 1 <= told < len(text) / 4  # at most once every two seconds
+        assert 1 <= told < len(text) / 4  # the page tells this at most once every two seconds
 
 
 @on_stage
@@ -317,7 +317,7 @@ async def test_the_status_shows_that_the_server_does_not_respond(stage: Stage) -
 
 
 @on_stage
-async def test_of_five_thousand_lines_the_page_holds_only_those_near_the_view(stage: Stage) -> None:
+async def test_the_page_holds_only_the_lines_near_the_view_of_a_conversation_with_5000_lines(stage: Stage) -> None:
     async with stage.serve(host, title="Elske") as served, stage.open(served.address) as page:
         await said(page, "Good evening.")
         (session,) = served.sessions

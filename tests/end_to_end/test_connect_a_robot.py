@@ -24,7 +24,7 @@ ROOT = Path(__file__).parents[2]
 PAGE = ROOT / "docs" / "how-to" / "connect-a-robot.md"
 EXTRAS = tomllib.loads((ROOT / "pyproject.toml").read_text())["project"]["optional-dependencies"]
 STAYS = ("ravestate robot", "ravestate run")
-"""Commands that begin like this run until Ctrl-C."""
+"""The beginnings of commands that run until Ctrl-C."""
 
 
 class Reader:

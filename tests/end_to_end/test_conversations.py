@@ -1,4 +1,4 @@
-"""The sample conversations of the paper's appendix, and properties of all conversations with the complete agent."""
+"""The sample conversations of the paper's appendix, and properties that hold for all conversations."""
 
 from __future__ import annotations
 

@@ -82,7 +82,7 @@ async def test_a_visitor_talks_with_the_robot(stage: Stage, tmp_path: Path) -> N
 
 
 @on_stage
-async def test_another_site_may_not_speak_to_the_robot(stage: Stage) -> None:
+async def test_another_site_cannot_speak_to_the_robot(stage: Stage) -> None:
     async with stand_in() as (_, server, _), stage.open(server.address, complaints=True) as page:
         answer = await page.evaluate(
             """address => new Promise(done => {

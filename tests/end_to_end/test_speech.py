@@ -25,7 +25,7 @@ guide = rs.Module("guide", requires=(rawio,))
 
 @guide.rule(when=rawio.input.changed, writes=rawio.output)
 async def answer(ctx: rs.RuleContext) -> None:
-    """Talk for so long that the user can interrupt."""
+    """Talk for a long time, so that the user can interrupt."""
     ctx[rawio.output] = ANSWER
 
 
@@ -45,7 +45,9 @@ async def point(board: Page, lane: str, words: str) -> None:
     """Move the pointer along a lane until a tooltip with these words appears. The board may still draw its lanes."""
     tip = board.locator(".tip")
     ends = monotonic() + PATIENCE / 1000
-    for step in cycle((24, 12, 6, 3)):  # coarse sweeps first: on a busy machine, a lane may move during a slow sweep
+    for step in cycle(
+        (24, 12, 6, 3)
+    ):  # coarse sweeps first, because on a busy machine a lane can move during a slow sweep
         if step == 24 and monotonic() > ends:
             break
         name = await board.get_by_text(lane, exact=True).bounding_box()

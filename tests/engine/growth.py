@@ -1,8 +1,8 @@
-"""Workloads whose cost must grow as fast as their size, and the number of steps of the engine that each one takes.
+"""Workloads whose costs must not grow faster than their size, and a count of the engine's steps for each workload.
 
-A step is a line of the engine that runs. A list of a causal group's members counts one step for each member, because a
-single line makes the whole list. Steps can be counted in pure Python only, so ``test_growth.py`` runs this file in a
-process of its own.
+Each line of the engine that runs is a step. A list of a causal group's members counts one step for each member, because
+a single line makes the whole list. Steps can only be counted in pure Python, so ``test_growth.py`` runs this file in a
+separate process.
 """
 
 from __future__ import annotations
@@ -28,7 +28,7 @@ Work = Callable[[], None]
 
 
 def independent_writers(size: int) -> Work:
-    """Make rules on one input, each with a slot of its own."""
+    """Make rules that all hear one input. Each writes its own slot."""
     m = rs.Module("m")
     heard = m.signal("heard")
     for n in range(size):
@@ -42,7 +42,7 @@ def independent_writers(size: int) -> Work:
 
 
 def fallbacks(size: int, *, cooldown: float = 0.0, guarded: bool = False) -> Work:
-    """Make fallbacks that wait for a topic; at the second input, the rule of the first answer still recovers."""
+    """Make fallbacks that wait for a topic. With `cooldown`, the rule that answers first later recovers."""
     m = rs.Module("m")
     heard, out, calm = m.signal("heard"), m.slot("out", ""), m.flag("calm", default=True)
     declared(m, "topic", when=heard & m.signal("topic"), writes=out)
@@ -61,7 +61,7 @@ def fallbacks(size: int, *, cooldown: float = 0.0, guarded: bool = False) -> Wor
 
 
 def pairs(size: int, rival: str, **options: Any) -> Work:
-    """Make a pair `a & b` beside another writer of its slot. All spikes come at once."""
+    """Make a rule `a & b`, and another writer of its slot. All spikes come together."""
     m = rs.Module("m")
     a, b, c, out = m.signal("a", limit=9999), m.signal("b", limit=9999), m.signal("c"), m.slot("out", "")
     declared(m, "both", when=a & b, writes=out)
@@ -76,7 +76,7 @@ def pairs(size: int, rival: str, **options: Any) -> Work:
 
 
 def shared_half(size: int) -> Work:
-    """Make two pairs that share a half; all second spikes are for one of them."""
+    """Make two rules that share their first spikes. All second spikes belong to one of the rules."""
     m = rs.Module("m")
     a, b, c = m.signal("a", limit=9999), m.signal("b", limit=9999), m.signal("c")
     declared(m, "one", when=a & b)

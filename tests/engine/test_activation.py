@@ -1,4 +1,4 @@
-"""The table of an activation's life; and no sequence of events corrupts an engine (L12, L14, L17, L18)."""
+"""The table of an activation's states. No sequence of events corrupts an engine (L12, L14, L17, L18)."""
 
 from __future__ import annotations
 
@@ -22,7 +22,7 @@ ONE = compiled(World((SignalOf(),), (), (RuleOf(((Want("s0"),),)),)))[1]
 
 @pytest.mark.parametrize("step", Step)
 @pytest.mark.parametrize("state", State)
-def test_a_step_in_the_table_happens_and_any_other_is_an_error(state: State, step: Step) -> None:
+def test_only_the_steps_in_the_table_are_allowed(state: State, step: Step) -> None:
     activation = Activation(7, ONE.rule_plans[0].clauses[0])
     activation.state = state
     expected = TRANSITIONS.get((state, step))
@@ -35,7 +35,7 @@ def test_a_step_in_the_table_happens_and_any_other_is_an_error(state: State, ste
         assert activation.state == expected
 
 
-def test_every_state_but_the_last_can_be_reached_and_left() -> None:
+def test_every_state_except_the_last_can_be_reached_and_left() -> None:
     reached = {State.GATHERING} | set(TRANSITIONS.values())
     assert reached == set(State)
     assert {state for state, _ in TRANSITIONS} == set(State) - {State.ENDED}
@@ -43,7 +43,7 @@ def test_every_state_but_the_last_can_be_reached_and_left() -> None:
 
 
 class Abuse(RuleBasedStateMachine):
-    """An engine under random events, allowed and forbidden ones."""
+    """An engine that receives random events. Some of them are allowed, and some are not."""
 
     def __init__(self) -> None:
         super().__init__()
@@ -62,7 +62,7 @@ class Abuse(RuleBasedStateMachine):
         self.play.engine.receive(event, self.now)
 
     def refused(self, event: events.Event, *errors: type[Exception]) -> None:
-        """Assert that an event is refused with a clear error, and changes nothing."""
+        """Assert that the engine refuses an event with a clear error, and that the event changes nothing."""
         before = still(self.play)
         with pytest.raises(errors) as caught:
             self.receive(event)

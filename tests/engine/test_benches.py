@@ -1,5 +1,7 @@
-"""Benches: the first spikes for a rule that alone writes its slot share one second spike; the runs are the same as
-without benches."""
+"""Benches: if a rule is the only writer of its slot, many of its first spikes share one second spike.
+
+The second spike is called *counterpart*. The rule runs on the same spikes as it would without benches.
+"""
 
 from __future__ import annotations
 
@@ -30,7 +32,7 @@ def at_rest(engine: Engine) -> bool:
 
 
 def burst(signal: str, count: int, first: int = 0) -> list[Event]:
-    """Return `count` events that emit a signal; the payloads are the numbers from `first` on."""
+    """Return `count` events that emit a signal, with the numbers from `first` on as payloads."""
     return [Emit(signal, n) for n in range(first, first + count)]
 
 
@@ -43,7 +45,7 @@ def test_the_oldest_spikes_become_a_pair(together: bool) -> None:
     assert at_rest(engine)
 
 
-def test_a_counterpart_of_many_spikes_makes_one_activation() -> None:
+def test_many_spikes_that_share_a_counterpart_make_only_one_activation() -> None:
     engine = writer()
     runs(engine, *burst("m:a", 20), Emit("m:b", 0), end=False)
     assert activations(engine) == 1
@@ -75,7 +77,7 @@ def test_a_spike_with_a_counterpart_does_not_grow_too_old() -> None:
     assert at_rest(engine)
 
 
-def test_a_spike_that_grew_too_old_with_its_counterpart_ends_with_it() -> None:
+def test_a_spike_that_has_grown_too_old_beside_its_counterpart_takes_no_other() -> None:
     engine = writer()
     [run] = runs(engine, *burst("m:a", 3), Emit("m:b", 0), end=False)
     runs(engine, now=8.0)
@@ -85,7 +87,7 @@ def test_a_spike_that_grew_too_old_with_its_counterpart_ends_with_it() -> None:
     assert not runs(engine, Emit("m:b", 1), now=8.0)
 
 
-def test_a_wiped_counterpart_gives_way_to_the_next() -> None:
+def test_the_next_counterpart_takes_the_place_of_a_withdrawn_one() -> None:
     m = rs.Module("m")
     a, b = m.signal("a"), m.signal("b", limit=1)
     declared(m, "both", when=a & b, writes=m.slot("out", ""))
@@ -95,9 +97,9 @@ def test_a_wiped_counterpart_gives_way_to_the_next() -> None:
     assert at_rest(engine)
 
 
-def test_a_spike_whose_group_refuses_lets_the_next_one_ask_in_the_same_round() -> None:
-    # The first a meets the first b and the third one, and its group can answer only once. The second a takes the third b
-    # in the same round, before the rule of the younger input.
+def test_if_the_group_of_a_spike_refuses_the_next_spike_asks_in_the_same_round() -> None:
+    # The first s0 pairs with the first s1. Its group can answer only once, so it refuses a pair with the third s1. The
+    # second s0 takes the third s1 in the same round of consent.
     both = RuleOf(when=((Want("s0"), Want("s1")),), writes=("v0",), acts=(Act(seconds=1.0),))
     other = RuleOf(when=((Want("s2"),),), writes=("v1",))
     inputs = tuple((0.0, ("emit", signal, n)) for n, signal in enumerate(("s1", "s1", "s0", "s0", "s1", "s2")))
@@ -118,7 +120,7 @@ def test_an_explanation_shows_the_spikes_on_a_bench() -> None:
     ]
 
 
-def test_a_tracer_changes_no_run() -> None:
+def test_a_tracer_does_not_change_the_runs() -> None:
     quiet, traced = writer(), writer()
     [run] = runs(traced, *burst("m:a", 4), Emit("m:b", 0), end=False)
     [same] = runs(quiet, *burst("m:a", 4), Emit("m:b", 0), end=False)
@@ -145,5 +147,5 @@ def test_a_fallback_asks_again_when_a_bench_loses_its_last_counterpart() -> None
     engine.advance(1.0)
     assert not runs(engine, now=1.0, end=False)
     [other] = runs(engine, Finish(run.run, "done"), now=2.0, end=False)
-    assert other.rule.name == "m:fallback"  # the patience of `both`, which was ready meanwhile, is over
+    assert other.rule.name == "m:fallback"  # the patience of `both` has ended in the meantime, while it was ready
     assert payloads([other]) == [(1,)]

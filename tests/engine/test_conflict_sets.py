@@ -1,4 +1,4 @@
-"""Conflict sets: the same rules run with and without a trace."""
+"""Conflict sets: the same rules run with a trace and without a trace."""
 
 from __future__ import annotations
 
@@ -12,7 +12,7 @@ from ravestate.testing import simulate
 pytestmark = pytest.mark.parametrize("trace", [True, False])
 
 
-def test_a_rule_of_two_clauses_gives_a_spike_up_for_both(trace: bool) -> None:
+def test_a_rule_that_resigns_gives_its_spike_up_for_both_its_clauses(trace: bool) -> None:
     m = rs.Module("m")
     a, out, ran = m.signal("a"), m.slot("out", ""), list[str]()
 
@@ -54,7 +54,7 @@ def test_groups_merge_with_and_without_a_listener_of_the_slot(trace: bool) -> No
         assert sim.read(wanted) == 1
 
 
-def test_an_exception_without_a_repr_is_a_failure_like_any_other(trace: bool) -> None:
+def test_an_exception_whose_repr_raises_is_a_failure_like_any_other(trace: bool) -> None:
     class Bad(Exception):
         def __repr__(self) -> str:
             raise ValueError
@@ -77,7 +77,7 @@ def test_an_exception_without_a_repr_is_a_failure_like_any_other(trace: bool) ->
         assert sim.read(out) == "fallback"
 
 
-def test_a_rule_that_resigns_leaves_the_spike_to_the_rules_behind_its_other_clause(trace: bool) -> None:
+def test_after_a_rule_resigns_a_rule_of_less_utility_than_its_other_clause_runs(trace: bool) -> None:
     m = rs.Module("m")
     a, b, out = m.signal("a"), m.signal("b"), m.slot("out", "")
 

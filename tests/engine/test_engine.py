@@ -1,4 +1,4 @@
-"""Events that no engine should receive are refused with a clear message."""
+"""The engine refuses impossible events with a clear message."""
 
 from __future__ import annotations
 
@@ -18,7 +18,7 @@ go, lit = m.signal("go"), m.flag("lit")
 
 @m.rule(when=go, writes=lit)
 async def light(ctx: rs.RuleContext) -> None:
-    """A rule that the engine starts and no test calls."""
+    """A rule that the engine starts. No test calls its function."""
 
 
 def running() -> tuple[Engine, int]:
@@ -40,7 +40,7 @@ def running() -> tuple[Engine, int]:
         (cast("Any", "go"), "'go' is not an event"),
     ],
 )
-def test_an_event_that_makes_no_sense_is_refused_and_changes_nothing(event: Any, message: str) -> None:
+def test_an_impossible_event_is_refused_and_changes_nothing(event: Any, message: str) -> None:
     engine, run = running()
     with pytest.raises(EngineError, match=message):
         engine.receive(event, 1.0)
@@ -54,10 +54,10 @@ def test_a_run_ends_in_one_of_four_ways() -> None:
     engine, run = running()
     with pytest.raises(EngineError, match="done, resigned, failed, retired, not by 'won'"):
         engine.receive(events.Finish(run, cast("Any", "won")), 1.0)
-    engine.receive(events.Finish(run, "done"), 1.0)  # the refused event has not ended it
+    engine.receive(events.Finish(run, "done"), 1.0)  # the refused event has not ended the run
 
 
-def test_a_time_is_a_number() -> None:
+def test_a_time_that_is_not_a_number_is_refused() -> None:
     engine, _ = running()
     with pytest.raises(EngineError, match="NaN"):
         engine.receive(events.Emit("m:go"), float("nan"))

@@ -1,4 +1,4 @@
-"""Explanations give the exact end of a wait and lead of a rival, even among many rules."""
+"""Even with many rules, an explanation has the exact end of a wait and the exact lead of a rival."""
 
 from __future__ import annotations
 
@@ -38,7 +38,7 @@ def test_a_wait_keeps_its_end_when_the_best_rival_resigns() -> None:
         assert waits.until == 1.0
 
 
-def test_the_nats_are_those_of_the_clause_that_competes() -> None:
+def test_the_lead_of_a_rival_is_that_of_its_competing_clause() -> None:
     m = rs.Module("m")
     heard, hint, other, out = m.signal("heard"), m.signal("hint"), m.signal("other"), m.slot("out", "")
     declared(m, "two", when=(heard & hint) | other.where(bool).where(callable), writes=out)
@@ -52,7 +52,7 @@ def test_the_nats_are_those_of_the_clause_that_competes() -> None:
 
 
 @pytest.mark.parametrize("traced", [False, True])
-def test_followers_name_the_rivals_of_their_leader(traced: bool) -> None:
+def test_a_rule_that_waits_behind_another_rule_also_names_the_rivals_of_that_rule(traced: bool) -> None:
     m = rs.Module("m")
     heard, out = m.signal("heard"), m.slot("out", "")
     declared(m, "topic", when=heard & m.signal("topic"), writes=out)
@@ -72,7 +72,7 @@ def test_followers_name_the_rivals_of_their_leader(traced: bool) -> None:
     }
 
 
-def test_earlier_spikes_set_no_deadline_for_an_added_rule_that_only_looks() -> None:
+def test_an_added_rule_with_a_detached_constraint_sets_no_deadline_for_earlier_spikes() -> None:
     m = rs.Module("m")
     a, b = m.signal("a"), m.signal("b")
     declared(m, "both", when=b & a.detached())
@@ -82,7 +82,7 @@ def test_earlier_spikes_set_no_deadline_for_an_added_rule_that_only_looks() -> N
 
     @m.rule(when=a.detached().min_age(2.0))
     async def later(ctx: Any) -> None:
-        """Look at spikes that occur from now on."""
+        """A rule that can look only at spikes that occur from now on."""
 
     engine.receive(AddRule(engine.policy.with_rule(later)), 0.0)
     assert not runs(engine)

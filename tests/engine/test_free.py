@@ -1,5 +1,4 @@
-"""Activations that need no consent leave their queue in the order of their newest spikes, not in the order of
-joining."""
+"""Activations that need no consent leave their queue in the order of their newest spikes, not of their arrival."""
 
 from __future__ import annotations
 

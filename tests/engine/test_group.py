@@ -1,4 +1,4 @@
-"""Causal groups, and the shared empty table that stands for a table without entries."""
+"""Causal groups, and the empty table that all groups without entries share."""
 
 from __future__ import annotations
 

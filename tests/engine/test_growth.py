@@ -1,4 +1,4 @@
-"""Ten times the work costs about ten times the steps: no part of the engine is quadratic unless a law demands it."""
+"""Ten times the work takes about ten times the steps, so no part of the engine has quadratic costs."""
 
 from __future__ import annotations
 
@@ -13,7 +13,7 @@ import pytest
 from engine.growth import WORKLOADS
 
 LINEAR = 13.0
-"""How many times as many steps the engine may take for ten times the size."""
+"""The maximum factor by which the steps may grow if the size grows tenfold."""
 
 
 @cache

@@ -1,4 +1,4 @@
-"""Halves: a first spike costs no activation, and the runs are the same as if it had one."""
+"""Halves: a first spike that waits for a second spike costs no activation, and this does not change the runs."""
 
 from __future__ import annotations
 
@@ -15,7 +15,7 @@ from ravestate.engine.explain import explain
 
 
 def declared(module: rs.Module, name: str, **options: Any) -> None:
-    """Declare a rule; a bare engine calls no function."""
+    """Declare a rule. Its function does nothing, because a bare engine does not call it."""
 
     async def function(ctx: Any) -> None:
         """Do nothing."""
@@ -24,7 +24,7 @@ def declared(module: rs.Module, name: str, **options: Any) -> None:
 
 
 def runs(engine: Engine, *given: Event, now: float = 0.0, end: bool = True) -> list[Run]:
-    """Receive events at one time; return the runs, which end at once unless `end` is false."""
+    """Let an engine receive events at one time. Return the runs, which end immediately unless `end` is false."""
     for event in given:
         engine.receive(event, now)
     found: list[Run] = []
@@ -84,7 +84,7 @@ def test_the_oldest_spikes_become_a_pair(together: bool) -> None:
     assert activations(engine) == 0
 
 
-def test_a_pair_is_one_activation_however_many_spikes_wait() -> None:
+def test_a_pair_makes_only_one_activation_even_if_many_spikes_wait() -> None:
     engine = pair()
     runs(engine, *(Emit("m:a", n) for n in range(20)))
     engine.receive(Emit("m:b", 0), 0.0)
@@ -116,7 +116,7 @@ def test_only_the_rule_whose_topic_occurs_gets_an_activation() -> None:
     assert activations(engine) == 1
     engine.receive(Emit("m:topic7", None, classifier.run), 0.0)
     assert activations(engine) == 2
-    # The classifier may yet raise the topic of a rule that was declared earlier, so this rule waits.
+    # The classifier may still raise the topic of a rule that was declared earlier, so the rule about7 waits.
     assert not runs(engine, end=False)
     [run] = runs(engine, Finish(classifier.run, "done"))
     assert run.rule.name == "m:about7"
@@ -124,7 +124,7 @@ def test_only_the_rule_whose_topic_occurs_gets_an_activation() -> None:
     assert not engine.state.halves
 
 
-def test_a_rule_waits_with_patience_for_a_rival_in_a_half() -> None:
+def test_a_rule_waits_with_patience_for_a_rival_that_has_no_activation() -> None:
     m = rs.Module("m")
     speech, point, out = m.signal("speech"), m.signal("point"), m.slot("out", "")
     declared(m, "fused", when=speech & point, writes=out)
@@ -137,7 +137,7 @@ def test_a_rule_waits_with_patience_for_a_rival_in_a_half() -> None:
     assert not runs(engine, Emit("m:point"), now=1.0)
 
 
-def test_a_rule_that_resigned_leaves_the_spike_to_the_others() -> None:
+def test_a_rule_that_resigned_leaves_the_spikes_to_other_rules() -> None:
     m = rs.Module("m")
     a, b, out = m.signal("a"), m.signal("b"), m.slot("out", "")
     declared(m, "first", when=a & b, writes=out, weight=2.0)
@@ -149,7 +149,7 @@ def test_a_rule_that_resigned_leaves_the_spike_to_the_others() -> None:
 
 
 def with_added_pair(held: str, traced: bool) -> Engine:
-    """Return an engine with a rule `a & b` that was added beside a live spike of the signal `held`."""
+    """Return an engine to which a rule `a & b` was added while a spike of the signal `held` was live."""
     m = rs.Module("m")
     signals = {name: m.signal(name) for name in "ab"}
     declared(m, "keeps", when=signals[held] & m.signal("c"))
@@ -167,9 +167,7 @@ def with_added_pair(held: str, traced: bool) -> Engine:
 
 @pytest.mark.parametrize("traced", [False, True])
 @pytest.mark.parametrize("firsts", [2, 3])
-def test_a_rule_that_was_added_beside_a_live_spike_takes_it_in_the_place_of_a_lost_one(
-    firsts: int, traced: bool
-) -> None:
+def test_an_added_rule_that_loses_a_spike_takes_one_that_is_older_than_the_rule(firsts: int, traced: bool) -> None:
     engine = with_added_pair("b", traced)
     assert not runs(engine, *[Emit("m:a", n) for n in range(firsts)])
     assert payloads(runs(engine, Emit("m:b", "new"))) == [(0, "new"), (1, "old")]
@@ -178,14 +176,14 @@ def test_a_rule_that_was_added_beside_a_live_spike_takes_it_in_the_place_of_a_lo
 
 
 @pytest.mark.parametrize("traced", [False, True])
-def test_the_older_spike_may_be_of_either_signal(traced: bool) -> None:
+def test_the_spike_that_is_older_than_an_added_rule_can_be_of_either_signal(traced: bool) -> None:
     engine = with_added_pair("a", traced)
     found = runs(engine, Emit("m:a", 1), Emit("m:b", 2), Emit("m:b", 3), Emit("m:a", 4))
     assert payloads(found) == [(1, 2), (4, 3)]
     assert payloads(runs(engine, Emit("m:b", 5))) == [("old", 5)]
 
 
-def test_a_rule_pairs_spikes_although_a_rule_beside_it_has_retired() -> None:
+def test_a_rule_still_pairs_spikes_after_another_rule_has_retired() -> None:
     m = rs.Module("m")
     a, b = m.signal("a"), m.signal("b")
     declared(m, "both", when=a & b)
@@ -200,7 +198,7 @@ def test_a_rule_pairs_spikes_although_a_rule_beside_it_has_retired() -> None:
 
 
 @pytest.mark.parametrize("traced", [False, True])
-def test_after_a_false_predicate_no_further_one_is_called(traced: bool) -> None:
+def test_after_a_false_predicate_no_further_predicate_is_called(traced: bool) -> None:
     m = rs.Module("m")
     a, b = m.signal("a"), m.signal("b")
     declared(m, "both", when=a.where(lambda n: n is not None).where(lambda n: n > 0) & b)
@@ -235,7 +233,7 @@ def test_activations_without_consent_start_in_batches() -> None:
 
 
 @pytest.mark.parametrize("seed", range(5))
-def test_each_rule_of_a_shared_half_takes_the_spikes_in_order(seed: int) -> None:
+def test_rules_that_share_first_spikes_each_take_them_in_order(seed: int) -> None:
     m = rs.Module("m")
     a, b, c = (m.signal(name, limit=9999) for name in "abc")
     declared(m, "one", when=a & b)

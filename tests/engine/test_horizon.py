@@ -1,4 +1,4 @@
-"""The horizon derives a cycle of causes once, however many ways lead around it, and its result follows the laws."""
+"""The horizon derives a cycle of causes only once, even if many ways lead around it, and its result is correct."""
 
 from __future__ import annotations
 
@@ -13,7 +13,7 @@ from ravestate.engine.events import Emit
 
 
 def clique(size: int, *, writes: bool) -> tuple[Engine, list[Any]]:
-    """Return an engine whose topics may all raise each other, and a list that grows with each step of a derivation."""
+    """Return an engine whose topics can all raise each other, and a list that grows with each step of a derivation."""
     m = rs.Module("m")
     heard, out, probe = m.signal("heard"), m.slot("out", ""), m.slot("probe", 1)
     topics = [m.signal(f"topic{n}") for n in range(size)]
@@ -43,4 +43,4 @@ def test_the_cost_of_a_clique_of_topics_grows_with_its_links(writes: bool) -> No
         assert [run.rule.name for run in runs(engine, now=1.0)] == ["m:fallback"]
         counts.append(len(taken))
     few, many = counts
-    assert many <= 6 * few, counts  # 30 links instead of 6, where there are 1,950 ways instead of 15
+    assert many <= 6 * few, counts  # six topics have 30 links and 1,950 ways; three topics have 6 links and 15 ways

@@ -1,4 +1,4 @@
-"""A line gives its places in order, not in the order of joining."""
+"""A line returns its places in sorted order, and not in the order in which they joined."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""An engine at rest keeps only its memory; to work, it borrows parts from its policy."""
+"""An engine at rest keeps only its memory. When it has work, it borrows parts from its policy."""
 
 from __future__ import annotations
 
@@ -51,7 +51,7 @@ def rest(engine: Engine, now: float) -> None:
     finish(engine, now)
 
 
-def test_engines_that_take_turns_share_only_parts() -> None:
+def test_engines_that_take_turns_share_parts_but_no_state() -> None:
     policy = rs.compile(m)
     one, two = Engine(policy), Engine(policy)
     for turn in range(3):
@@ -73,7 +73,7 @@ def test_engines_that_take_turns_share_only_parts() -> None:
     )
 
 
-def test_an_engine_works_while_a_spike_lives() -> None:
+def test_an_engine_keeps_its_parts_while_a_spike_is_live() -> None:
     policy = rs.compile(m)
     engine = Engine(policy)
     serve(engine, 1, 0.0)
@@ -136,7 +136,7 @@ def test_spare_parts_keep_nothing_of_an_engine() -> None:
     assert watched() is None
 
 
-def test_a_rule_that_was_added_stays_after_a_rest() -> None:
+def test_an_engine_keeps_an_added_rule_after_a_rest() -> None:
     policy = rs.compile(m)
     engine = Engine(policy)
 
@@ -153,7 +153,7 @@ def test_a_rule_that_was_added_stays_after_a_rest() -> None:
     assert effect.rule.name == "late:late"
 
 
-def test_spare_parts_do_not_know_when_their_last_engine_got_a_rule() -> None:
+def test_a_rule_added_to_an_engine_does_not_affect_the_next_engine_with_the_same_parts() -> None:
     first = Engine(rs.compile(m))
     for turn in range(30):
         serve(first, turn, 10.0 * turn)
@@ -170,7 +170,9 @@ def test_spare_parts_do_not_know_when_their_last_engine_got_a_rule() -> None:
         second.receive(Emit("m:go"), 0.0)
     second.receive(Emit("m:other"), 0.0)
     plan = second.policy.plan_of["m:both"]
-    assert [len(one.holds) for one in explain(second, plan).activations].count(2) == 1  # one pair stands for five
+    assert [len(one.holds) for one in explain(second, plan).activations].count(
+        2
+    ) == 1  # the five spikes have only one pair
 
 
 def test_an_engine_does_not_rest_before_it_has_reported_a_predicate_that_raised() -> None:
@@ -188,7 +190,7 @@ def test_an_engine_does_not_rest_before_it_has_reported_a_predicate_that_raised(
     assert (effect.rule, type(effect.exception)) == ("m:positive", TypeError)
 
 
-def test_a_look_at_an_engine_at_rest_keeps_no_parts() -> None:
+def test_explain_and_snapshot_leave_an_engine_at_rest() -> None:
     policy = rs.compile(m)
     engine = Engine(policy)
     explain(engine, policy.plan_of["m:note"])
@@ -197,7 +199,7 @@ def test_a_look_at_an_engine_at_rest_keeps_no_parts() -> None:
     assert engine.next_deadline() is None
 
 
-def test_a_built_in_flag_that_is_written_at_rest_gets_its_right_value_again() -> None:
+def test_a_write_to_a_built_in_flag_at_rest_is_corrected() -> None:
     policy = rs.compile(m)
     engine = Engine(policy)
     engine.receive(Write("core:activity", True), 0.0)

@@ -1,4 +1,4 @@
-"""The table of outcomes names every end of a run (L18, L20, L21)."""
+"""The table of outcomes has every possible end of a run (L18, L20, L21)."""
 
 from __future__ import annotations
 
@@ -14,7 +14,7 @@ from ravestate.engine.reasons import Outcome
 TOLD = ("", *get_args(CancelReason))
 
 
-def test_each_order_and_each_end_has_a_row() -> None:
+def test_the_table_has_a_row_for_each_reason_of_cancellation_with_each_end() -> None:
     assert set(OUTCOMES) == set(product(TOLD, KINDS))
     assert {outcome for row in OUTCOMES.values() for outcome, _ in row} == {*Outcome}
 
@@ -25,7 +25,7 @@ def test_a_run_that_wrote_a_slot_has_answered(told: str, ended: str) -> None:
 
 
 @pytest.mark.parametrize("told", TOLD)
-def test_a_run_that_wrote_a_slot_does_not_resign(told: str) -> None:
+def test_a_run_that_resigns_after_a_write_fails(told: str) -> None:
     assert verdict(told, "resigned", wrote=True) == ("failed", True)
 
 

@@ -1,4 +1,7 @@
-"""Faults that random worlds have found: the smallest world that shows each fault, and the law that was broken."""
+"""Faults of the engine that random worlds have found.
+
+Each test plays the smallest world that shows the fault, and cites the law that was broken.
+"""
 
 from __future__ import annotations
 
@@ -17,7 +20,7 @@ V1 = (SlotOf(),)
 
 
 def on(*signals: str) -> tuple[tuple[Want, ...], ...]:
-    """Return a condition of one conjunction."""
+    """Return the conjunction of these signals as a condition."""
     return (tuple(Want(signal) for signal in signals),)
 
 
@@ -27,7 +30,7 @@ def runs(play: Play) -> list[str]:
 
 
 def test_a_spike_that_is_held_is_wiped_even_if_detached_needs_have_forgotten_it() -> None:
-    # L20: wiping withdraws the live spikes. A detached need looks back 1 s; the first rule holds the spike longer.
+    # L20: wiping withdraws the live spikes. The detached need looks back only 1 s, but r0 holds the spike for longer.
     looking = RuleOf(when=((Want("s2"), Want("s0", max_age=1.0, detached=True)),))
     world = World(
         S3,
@@ -39,7 +42,7 @@ def test_a_spike_that_is_held_is_wiped_even_if_detached_needs_have_forgotten_it(
 
 
 def test_a_held_spike_counts_against_its_limit_after_detached_needs_have_forgotten_it() -> None:
-    # L23: s0 has at most one live spike, so the first rule loses the first s0 when the second is born.
+    # L23: s0 has at most one live spike, so r0 loses the first s0 when the second s0 is born.
     looking = RuleOf(when=((Want("s2"), Want("s0", max_age=1.0, detached=True)),))
     world = World(
         (SignalOf(limit=1), SignalOf(), SignalOf()),
@@ -58,7 +61,7 @@ def test_a_held_spike_counts_against_its_limit_after_detached_needs_have_forgott
 
 @pytest.mark.parametrize("end", ["resigned", "failed"])
 def test_a_rule_that_resigned_does_not_take_the_same_spikes_again(end: str) -> None:
-    # L18: a rule that resigned gives up its spikes. Another of its activations held the older s0 and the same s1.
+    # L18: a rule that resigned gives up its spikes. Here, a second activation held an older s0 and the same s1.
     world = World(
         (SignalOf(), SignalOf(), SignalOf()),
         V1,
@@ -74,16 +77,16 @@ def test_a_rule_that_resigned_does_not_take_the_same_spikes_again(end: str) -> N
     Play(world, started=Exclusion()).play()
 
 
-def test_a_rule_that_hears_the_end_of_pressure_may_itself_be_kept_waiting() -> None:
-    # L22, L24: a rule that holds the spike of pressure:false waits, so pressure becomes true. That withdraws the spike,
-    # so pressure becomes false, and so on, all in one instant: `effects` never returned.
+def test_a_rule_that_hears_the_end_of_pressure_can_itself_be_kept_waiting() -> None:
+    # L22, L24: a rule that holds the spike of pressure:false waits, so pressure becomes true. This withdraws the spike,
+    # so pressure becomes false again, and so on in the same instant. In the past, `effects` never returned.
     world = World(
         S3,
         V1,
         (
-            RuleOf(when=on("s0"), writes=("v0",)),  # waits 1 s for the next rule
+            RuleOf(when=on("s0"), writes=("v0",)),  # waits 1 s for r1
             RuleOf(when=on("s0", "s1"), writes=("v0",)),
-            RuleOf(when=on("core:pressure:false", "s2"), writes=("v0",)),  # waits for the last
+            RuleOf(when=on("core:pressure:false", "s2"), writes=("v0",)),  # waits for r3
             RuleOf(when=on("core:pressure:false", "s2", "s1"), writes=("v0",)),
         ),
         ((0.0, ("emit", "s2", 1)), (0.0, ("emit", "s0", 1))),
@@ -91,8 +94,8 @@ def test_a_rule_that_hears_the_end_of_pressure_may_itself_be_kept_waiting() -> N
     Play(world, before=bounded).play()
 
 
-def test_a_foreground_rule_may_wait_for_the_end_of_activity_and_another_signal() -> None:
-    # L22, L24: as above, because an activation that holds the spike of activity:false counts as activity.
+def test_a_foreground_rule_can_wait_for_the_end_of_activity_and_another_signal() -> None:
+    # L22, L24: an activation that holds the spike of activity:false counts as activity, so the same loop arose.
     world = World(
         S3,
         rules=(RuleOf(when=on("s0")), RuleOf(when=on("core:activity:false", "s1"))),
@@ -101,8 +104,8 @@ def test_a_foreground_rule_may_wait_for_the_end_of_activity_and_another_signal()
     Play(world, before=bounded).play()
 
 
-def test_judging_the_best_rule_of_a_conflict_set_against_a_rival_raises_no_error() -> None:
-    # In the past, the alternatives unfolded within a loop over the members of their group, which raised a RuntimeError.
+def test_judging_the_best_of_several_rules_against_a_rival_raises_no_error() -> None:
+    # In the past, the judgement changed the members of a group during a loop over them, which raised a RuntimeError.
     world = World(
         S3,
         V1,
@@ -119,8 +122,8 @@ def test_judging_the_best_rule_of_a_conflict_set_against_a_rival_raises_no_error
 
 
 def test_a_waiting_rule_asks_again_when_its_rival_begins_to_cool_down() -> None:
-    # L9, L15: r1 has more utility and holds a v0:changed that is too young, so r0 waits. Then r1 runs for another
-    # cause. From then on its utility is 0, so r0 need not wait any more.
+    # L9, L15: r1 has more utility and holds an s1 that is too young, so r0 waits. Then r1 runs for another cause.
+    # From then on its utility is 0, so r0 does not have to wait any more.
     world = World(
         S3,
         V1,
@@ -135,9 +138,9 @@ def test_a_waiting_rule_asks_again_when_its_rival_begins_to_cool_down() -> None:
 
 
 def test_a_waiting_rule_asks_again_when_its_ready_rival_loses_a_spike_of_another_cause() -> None:
-    # L15, L16: r1 holds s0 and s1, and waits for r2, which writes for s1; r0 waits for r1. When r2 is done, s1 is
-    # consumed, so r1 lacks it. The patience of r1 for s0 began at 0 s, when r1 first lacked s1, and is over. But r0 did
-    # not ask again, because its only group is that of s0; it waited for ever.
+    # L15, L16: r0 waits for r1, which holds s0 and s1; and r1 waits for r2, which writes for s1. When r2 is done, s1 is
+    # consumed, so r1 lacks s1 again. Its patience for s0 began at 0 s, when r1 first lacked s1, and is over. In the
+    # past, r0 did not ask again, because it only belongs to the group of s0. So r0 waited for ever.
     def lasting(*signals: str) -> tuple[tuple[Want, ...], ...]:
         return (tuple(Want(signal, max_age=None) for signal in signals),)
 
@@ -162,9 +165,9 @@ def test_a_waiting_rule_asks_again_when_its_ready_rival_loses_a_spike_of_another
     assert not play.engine.state.waiting
 
 
-def test_a_waiting_rule_asks_again_when_its_rival_takes_a_spike_that_cannot_be_joined() -> None:
-    # L12, L16: both constraints on s1 need spikes of one causal group. Once the rival holds an s1 that meets only one
-    # of them, it is not viable any more: a new input never joins an existing group.
+def test_a_waiting_rule_asks_again_when_its_rival_takes_a_spike_that_no_other_can_join() -> None:
+    # L12, L16: both constraints on s1 need spikes of one causal group. Once r1 holds an s1 that meets only one of them,
+    # r1 is no longer viable, because a new input never joins an existing group.
     world = World(
         S3,
         V1,
@@ -178,10 +181,10 @@ def test_a_waiting_rule_asks_again_when_its_rival_takes_a_spike_that_cannot_be_j
     assert next(line for line in play.heard if "<rule m:r0>" in line).startswith("0.5 s < Run(")
 
 
-def test_a_waiting_rule_asks_again_when_a_rule_is_no_longer_live_elsewhere() -> None:
-    # L16 (iii): r1 lacks v0:false. Rules r0 and r1 might cause it while they are live for another cause. At 3 s their
-    # patience there has ended, and r0 runs; from then on they are live nowhere else. The engine noticed only the end of
-    # a rule's last activation, but the waiting activation was left.
+def test_a_waiting_rule_asks_again_when_a_rule_is_no_longer_live_for_another_cause() -> None:
+    # L16 (iii): r1 lacks v0:false. Rules r0 and r1 might cause it while they are live for another cause. At 3 s, their
+    # patience there ends, and r0 runs. From then on, they are live for no other cause. In the past, the engine noticed
+    # only the end of a rule's last activation. Here, the waiting activation was still left.
     world = World(
         S3,
         (SlotOf("flag"),),
@@ -198,8 +201,9 @@ def test_a_waiting_rule_asks_again_when_a_rule_is_no_longer_live_elsewhere() -> 
 
 @pytest.mark.parametrize("traced", [False, True])
 @pytest.mark.parametrize("wiped", [False, True])
-def test_an_alternative_gives_a_withdrawn_spike_up(traced: bool, wiped: bool) -> None:
-    # L20, L25: with a tracer, r1 has an activation, which loses the spike. Without a tracer, r1 must lose it as well.
+def test_a_rule_without_an_activation_gives_a_withdrawn_spike_up_too(traced: bool, wiped: bool) -> None:
+    # L20, L25: with a tracer, r1 has an activation, and this activation loses the spike. Without a tracer, r1 has no
+    # activation yet, but it must lose the spike as well.
     world = World(
         (SignalOf(keep="latest"),),
         V1,
@@ -213,9 +217,9 @@ def test_an_alternative_gives_a_withdrawn_spike_up(traced: bool, wiped: bool) ->
     assert runs(play) == (["r0"] if wiped else ["r0", "r0"])
 
 
-def test_a_stand_by_rival_is_not_made_firm_by_a_spike_of_another_cause() -> None:
-    # L15, L16: for the cause of s1, r0 is a rival only if r1 raises s2. For that, r1 needs an input, so patience bounds
-    # the wait. Rule r0 also runs for another cause, but the s2 of that cause gives r0 no stake here.
+def test_a_spike_of_another_cause_gives_a_rival_no_stake() -> None:
+    # L15, L16: for the cause of s1, r0 is a rival of r2 only if r1 raises s2. To raise it, r1 needs an input, so
+    # patience bounds the wait. Rule r0 also runs for another cause, but the s2 of that cause gives r0 no stake here.
     world = World(
         S3,
         V1,
@@ -230,8 +234,9 @@ def test_a_stand_by_rival_is_not_made_firm_by_a_spike_of_another_cause() -> None
     assert next(line for line in play.heard if "<rule m:r2>" in line).startswith("1 s < Run(")
 
 
-def test_a_spike_that_a_new_rule_may_look_back_at_is_forgotten_in_time() -> None:
-    # L23: the spike was born before a rule was added that looks back at s0 for 2 s. At 2 s, nothing held the spike.
+def test_a_spike_that_an_added_rule_can_look_back_at_is_dropped_in_time() -> None:
+    # L23: the added rule looks back at s0 for 2 s, also at a spike that was born before. At 2 s, nothing holds the
+    # spike.
     looking = RuleOf(when=((Want("s1"), Want("s0", max_age=2.0, detached=True)),))
     world = World(
         S3,
@@ -245,7 +250,8 @@ def test_a_spike_that_a_new_rule_may_look_back_at_is_forgotten_in_time() -> None
 
 
 def test_a_waiting_rule_asks_again_when_the_rule_that_it_waits_for_retires() -> None:
-    # L16, L18: r0 runs and may yet raise s0 for r1, for which r2 waits; at 0.25 s r1 retires, after a run for another cause.
+    # L16, L18: r2 waits for r1, because r0 runs and may still raise s0 for r1. At 0.25 s, r1 retires after a run for
+    # another cause, so r2 has nothing to wait for.
     world = World(
         (SignalOf(),),
         V1,
@@ -260,8 +266,8 @@ def test_a_waiting_rule_asks_again_when_the_rule_that_it_waits_for_retires() -> 
     assert next(line for line in play.heard if "<rule m:r2>" in line).startswith("0.25 s < Run(")
 
 
-def test_a_predicate_that_raises_in_a_snapshot_is_no_failure_of_the_rule() -> None:
-    # L24, L25: a snapshot tests each gate. A predicate that raises there is not reported.
+def test_a_predicate_that_raises_in_a_snapshot_is_not_a_failure_of_its_rule() -> None:
+    # L24, L25: a snapshot tests the predicates on slots. If one of them raises during a snapshot, it is not reported.
     world = World(S3, V1, (RuleOf(when=((Want("s0"), Gate("v0", "fussy")),)),), ((0.0, ("write", "v0", 2)),))
     play = Play(world).play()
     snapshot(play.engine)
@@ -270,9 +276,9 @@ def test_a_predicate_that_raises_in_a_snapshot_is_no_failure_of_the_rule() -> No
     assert "Failed" not in "".join(play.heard)
 
 
-def test_replay_takes_effects_when_the_runtime_took_them() -> None:
-    # L24. The classifier ends within its first step, so no rule has to wait, and pressure stays false. If a replay took
-    # the effects once more before the end of the run, the fallback would wait, and pressure would become true.
+def test_a_replay_takes_the_effects_at_the_same_points_as_the_runtime() -> None:
+    # L24: r0 ends within its first step, so no rule has to wait, and pressure stays false. If a replay also took the
+    # effects before the end of this run, r2 would wait, and pressure would become true.
     world = World(
         S3,
         V1,
@@ -305,7 +311,8 @@ OUT = (SlotOf(),)
 
 
 def test_a_younger_activation_is_under_pressure_even_if_its_rule_has_an_older_activation() -> None:
-    # L16: s1 comes at 0 s, s0 at 0.703 and 2.139 s. At 2.139 s r0's younger activation lacks s1 and is pressured.
+    # L16: s1 comes at 0 s, and s0 at 0.703 s and 2.139 s. At 2.139 s, the younger activation of r0 lacks s1, so it
+    # comes under pressure.
     world = World(
         S3,
         OUT,
@@ -319,8 +326,8 @@ def test_a_younger_activation_is_under_pressure_even_if_its_rule_has_an_older_ac
     assert moments(world, "r1") == [pytest.approx(3.139)]
 
 
-def test_a_rule_that_the_asking_one_keeps_waiting_makes_no_rival_viable() -> None:
-    # L16: r1 would wait a second for r0, because r0 lacks s1. Only r2 raises s1, and r2 waits for r1.
+def test_a_rule_that_waits_for_the_asking_rule_makes_no_rival_viable() -> None:
+    # L16: r0 lacks s1, and only r2 raises s1. But r2 waits for r1, so r1 must not wait for r0.
     world = World(
         S3,
         OUT,
@@ -334,8 +341,8 @@ def test_a_rule_that_the_asking_one_keeps_waiting_makes_no_rival_viable() -> Non
     assert moments(world, "r1") == [0.0]
 
 
-def test_patience_begins_when_a_rival_in_stand_by_first_hangs_on_an_input() -> None:
-    # L16: r1 raises s2 after 969 ms; r2 lacks s2 and the input s0 from the start, so r0 waits for 1 s.
+def test_patience_begins_when_a_rival_in_stand_by_first_lacks_an_input() -> None:
+    # L16: r1 raises s2 only after 969 ms, but r2 lacks the input s0 from the start. So r0 waits for 1 s in all.
     world = World(
         S3,
         OUT,
@@ -349,8 +356,8 @@ def test_patience_begins_when_a_rival_in_stand_by_first_hangs_on_an_input() -> N
     assert moments(world, "r0") == [1.0]
 
 
-def test_a_rule_that_recovers_faster_from_nothing_overtakes_at_once() -> None:
-    # L15: both rules have run at 2.644 s; r1 recovers faster.
+def test_a_rule_that_recovers_faster_from_0_overtakes_immediately() -> None:
+    # L15: both rules have run at 2.644 s. Because r1 recovers faster, it runs a second time in the same instant.
     world = World(
         S3,
         OUT,
@@ -365,7 +372,8 @@ def test_a_rule_that_recovers_faster_from_nothing_overtakes_at_once() -> None:
 
 
 def test_a_rule_that_writes_nothing_frees_its_spike_when_it_starts() -> None:
-    # L10: two activations of r0 hold the first s1. When one of them starts, the other is free for the second s1.
+    # L10: two activations of r0 hold the first s1. When one of them starts, the other loses this s1, and so can take
+    # the second s1.
     world = World(
         S3,
         (),
@@ -376,7 +384,7 @@ def test_a_rule_that_writes_nothing_frees_its_spike_when_it_starts() -> None:
 
 
 def test_a_detached_constraint_holds_the_newest_spike_until_its_rule_runs() -> None:
-    # L19
+    # L19: at 1 s, r0 runs with the second s1.
     world = World(
         S3,
         (),
@@ -388,7 +396,7 @@ def test_a_detached_constraint_holds_the_newest_spike_until_its_rule_runs() -> N
 
 
 def test_a_detached_constraint_takes_a_newer_spike_as_soon_as_it_is_old_enough() -> None:
-    # L19: the second s1 is old enough at 1.25 s, the rule is kept waiting until 2 s.
+    # L19: the second s1 is old enough at 1.25 s, and r1 is kept waiting until 2 s. So r1 runs with the second s1.
     world = World(
         S3,
         OUT,
@@ -404,7 +412,7 @@ def test_a_detached_constraint_takes_a_newer_spike_as_soon_as_it_is_old_enough()
 
 
 def test_the_signals_of_one_slot_cohere() -> None:
-    # L12: `changed` of the first write and `true` of the second are two writes.
+    # L12: `changed` of the first write and `true` of the second write must not join.
     world = World(
         S3,
         (SlotOf("flag", always=True),),
@@ -418,7 +426,8 @@ def test_the_signals_of_one_slot_cohere() -> None:
 
 
 def test_events_of_one_instant_count_in_the_order_in_which_they_arrive() -> None:
-    # L21: r0 begins after s1 is born, so s1 does not end it; the second s1 does, before r0 could end by itself.
+    # L21: r0 begins after the first s1 was born, so only the second s1 ends r0. If all three spikes arrive before r0
+    # can begin, none of them ends it.
     world = World(
         S3,
         OUT,
@@ -435,7 +444,8 @@ def test_events_of_one_instant_count_in_the_order_in_which_they_arrive() -> None
 
 
 def test_several_stalemates_in_one_instant_are_all_broken() -> None:
-    # L15: for each of two inputs, r1 waits for r0, which r3 may help; and r3 waits for r2, which r1 may help.
+    # L15: for each of the two inputs, r1 waits for r0, which may get its signal from r3. And r3 waits for r2, which may
+    # get its signal from r1.
     world = World(
         S3,
         (SlotOf(), SlotOf()),
@@ -451,8 +461,8 @@ def test_several_stalemates_in_one_instant_are_all_broken() -> None:
     assert moments(world, "r1") == [0.0, 0.0]
 
 
-def test_a_detached_clause_keeps_the_spike_that_another_clause_of_its_rule_runs_on() -> None:
-    # L10, L19
+def test_a_detached_clause_keeps_a_spike_with_which_another_clause_of_its_rule_runs() -> None:
+    # L10, L19: the other clause runs at 0 s. The detached clause still sees the same spike at 0.5 s.
     world = World(
         S3,
         (),
@@ -462,9 +472,9 @@ def test_a_detached_clause_keeps_the_spike_that_another_clause_of_its_rule_runs_
     assert moments(world, "r0") == [0.0, 0.5]
 
 
-def test_an_added_rule_looks_again_when_a_spike_that_is_older_than_the_rule_ripens() -> None:
-    # L19: r0 keeps both spikes of s0 alive. r1 is added at 0.75 s and holds the first s0, which is old enough. It looks at
-    # the second one as soon as that is old enough too, at 1.5 s.
+def test_an_added_rule_takes_a_spike_older_than_itself_once_the_spike_is_old_enough() -> None:
+    # L19: r0 keeps both spikes of s0 alive. r1 is added at 0.75 s, and at first holds the first s0. At 1.5 s, the
+    # second s0 is old enough too, so r1 must hold it instead.
     looking = RuleOf(when=((Want("s0", min_age=1.0, detached=True), Want("s1", min_age=0.5)),))
     world = World(
         S3,
@@ -481,8 +491,8 @@ def test_an_added_rule_looks_again_when_a_spike_that_is_older_than_the_rule_ripe
 
 
 def test_a_rule_asks_again_when_a_rival_that_another_rival_depends_on_gives_up() -> None:
-    # L15, L16: r1 asks. Its rival r0 might get s1 from r2; but r2 lacks the input v1 and has no patience, so r2 gives
-    # up at once.
+    # L15, L16: r0 is a rival of r1, because r0 might get s1 from r2. But r2 lacks the input v2:changed and has a
+    # patience of 0 s. So r2 gives up immediately, and r1 must ask again.
     world = World(
         S3,
         (SlotOf(), SlotOf(), SlotOf()),
@@ -496,10 +506,10 @@ def test_a_rule_asks_again_when_a_rival_that_another_rival_depends_on_gives_up()
     assert moments(world, "r1") == [0.0]
 
 
-def test_an_activation_that_has_taken_another_spike_asks_in_the_turn_of_its_new_cause() -> None:
-    # L12, L15: at 1.25 s the first activation of r2 runs and writes v0. The second one loses its spikes, and takes the
-    # later s1 of 0 s and the new write. In the past, it kept its place as if it still had its old cause. The s1 of 0.75
-    # s comes from the s0, which is older than that later s1. So the activation with this s1 goes first.
+def test_an_activation_that_has_taken_another_spike_asks_when_it_is_its_new_causes_turn() -> None:
+    # L12, L15: at 1.25 s, the first activation of r2 runs and writes v0. The second activation loses its spikes,
+    # and takes the last s1 of 0 s and the new write. In the past, it kept the turn of its old cause. But the s1 of
+    # 0.75 s comes from s0, which is older than the last s1 of 0 s. So the activation with the s1 of 0.75 s goes first.
     world = World(
         S3,
         V1,
@@ -519,8 +529,9 @@ def test_an_activation_that_has_taken_another_spike_asks_in_the_turn_of_its_new_
     assert ["'m:s1': 1" in call for call in calls] == [False, True]
 
 
-def test_a_stalemate_in_which_two_activations_may_help_the_same_rule_is_broken() -> None:
-    # L15: r1 waits for r3. Either of two activations of r2 may help r3, but both wait for r0, which r1 may help.
+def test_a_stalemate_in_which_two_activations_can_help_the_same_rule_is_broken() -> None:
+    # L15: r1 waits for r3, which may get s2 from either of two activations of r2. But both of them wait for r0, which
+    # may get s2 from r1.
     world = World(
         (*S3, SignalOf()),
         (SlotOf(), SlotOf(), SlotOf()),
@@ -546,9 +557,9 @@ def test_a_stalemate_in_which_two_activations_may_help_the_same_rule_is_broken()
     assert moments(world, "r2") == [0.75, 2.875]
 
 
-def test_clauses_whose_utilities_differ_only_by_a_rounding_error_are_equals() -> None:
-    # L9, L15: r1's utility is rounded, then doubled by its weight; r6 needs two signals of that utility. The first declared
-    # goes first, as for any equals.
+def test_utilities_that_differ_only_by_a_rounding_error_count_as_equal() -> None:
+    # L9, L15: the utility of r1 is rounded and then doubled by its weight. The utility of r6 is the sum of two such
+    # numbers. Both count as equal, so r1 goes first, because it is declared first.
     world = World(
         (SignalOf(input=True), *S3),
         (SlotOf(), SlotOf(), SlotOf("flag", always=True)),
@@ -569,9 +580,9 @@ def test_clauses_whose_utilities_differ_only_by_a_rounding_error_are_equals() ->
     assert "r6" not in runs(play)
 
 
-def test_a_clause_that_recovers_faster_from_nothing_goes_at_once_though_another_clause_may_help_a_rival() -> None:
-    # L15, L16: after its run, both clauses of the rule are worth 0 and the second recovers faster: the first clause waits
-    # for it from this moment on, so the first clause makes no rival of the second one viable.
+def test_a_clause_that_recovers_faster_from_0_runs_even_if_a_slower_clause_could_help_a_rival() -> None:
+    # L15, L16: after a run of r2, both its clauses are worth 0, but the second one recovers faster. So the first clause
+    # waits for the second from this moment on, and cannot make a rival of the second clause viable.
     rules = (
         RuleOf(
             when=on("s1", "s0"),
@@ -597,9 +608,9 @@ def test_a_clause_that_recovers_faster_from_nothing_goes_at_once_though_another_
     assert (runs(play), starts) == (["r0", "r1", "r2", "r2"], ["0.5"] * 4)
 
 
-def test_a_spike_in_a_half_that_an_older_activation_holds_as_well_is_under_no_pressure() -> None:
-    # L15, L16: r1's older activation holds the same input and a taken spike, and will run. So r0 surely waits, and the
-    # younger activation has no need to hurry: it gets the s1 of 2.5 s.
+def test_a_younger_activation_is_under_no_pressure_if_an_older_one_holds_the_same_spike() -> None:
+    # L15, L16: an older activation of r1 also holds this spike, and will run. So r0 waits in any case, and the younger
+    # activation is under no pressure. It gets the s1 of 2.5 s.
     rules = (
         RuleOf(when=on("s0"), writes=("v0",)),
         RuleOf(when=on("s0", "s1"), writes=("v0",), acts=(Act(seconds=2.0),)),
@@ -615,8 +626,8 @@ def test_a_spike_in_a_half_that_an_older_activation_holds_as_well_is_under_no_pr
 
 
 def test_a_rival_that_overtakes_a_waiting_rule_comes_under_pressure_at_that_moment() -> None:
-    # L15, L16: r0 waits for a taken slot when r1, which recovers, overtakes it. From then on r1 keeps r0 waiting, so r1
-    # has its patience, none, and gives its spike up.
+    # L15, L16: while r0 waits for a taken slot, r1 recovers and overtakes r0. From this moment, r1 keeps r0 waiting, so
+    # its patience begins. It is 0 s, so r1 gives its spike up immediately.
     rules = (
         RuleOf(when=on("s0", "s1"), writes=("v0",), acts=(Act(seconds=2.0),)),
         RuleOf(when=((Want("s0"), Want("s3", where="odd")),), writes=("v0",), cooldown=3.0, patience=0.0),
@@ -634,16 +645,16 @@ def test_a_rival_that_overtakes_a_waiting_rule_comes_under_pressure_at_that_mome
 
 
 def test_a_burst_for_rules_of_one_slot_is_answered_in_order() -> None:
-    # L15: older causes first. The rules read what each other write, so each round of consent lets one of them start.
+    # L15: older causes go first. All runs write the same slot, so each round of consent lets only one of them start.
     world = World(S3, V1, (RuleOf(when=on("s0"), writes=("v0",)),), ((0.0, ("emit", "s0", 0)),) * 50, together=True)
     play = Play(world, budget=50).play()
     assert runs(play) == ["r0"] * 50
     assert not play.engine.parts.agenda.places
 
 
-def test_an_alternative_that_waits_behind_a_rival_puts_it_under_pressure_from_the_first_moment() -> None:
-    # L15, L16: r0 keeps the best rule r2 waiting, and r1 keeps r3 waiting. The patience of both ends at 1 s. Then r2 runs
-    # and resigns, and r3 may answer at once.
+def test_a_rule_without_an_activation_puts_its_rival_under_pressure_from_the_first_moment() -> None:
+    # L15, L16: r0 keeps the best rule r2 waiting, and r1 keeps r3 waiting. The patience of r0 and r1 ends at 1 s. Then
+    # r2 runs and resigns, so r3 runs in the same instant.
     rules = (
         RuleOf(when=on("s0", "s1"), writes=("v0",), weight=10.0),
         RuleOf(when=on("s0", "s2"), writes=("v0",)),
@@ -656,8 +667,9 @@ def test_an_alternative_that_waits_behind_a_rival_puts_it_under_pressure_from_th
     assert (runs(play), starts) == (["r2", "r3"], ["1", "1"])
 
 
-def test_the_patience_of_a_rival_ends_although_nothing_waited_for_it_meanwhile() -> None:
-    # L16: r1 puts r0 under pressure until 3 s and then loses s1 for a while. The end of the patience was forgotten.
+def test_the_patience_of_a_rival_ends_even_if_no_rule_waited_for_it_meanwhile() -> None:
+    # L16: r1 puts r0 under pressure until 3 s, and then loses s1 for a while. In the past, the engine then forgot the
+    # end of the patience.
     rules = (RuleOf(when=((Want("s0"), Want("s1", where="odd")),), writes=("v0",), patience=2.0),)
     inputs = (
         (1.0, ("add", RuleOf(when=on("s1", "s0"), writes=("v0",)))),
@@ -670,8 +682,9 @@ def test_the_patience_of_a_rival_ends_although_nothing_waited_for_it_meanwhile()
     assert [line.split(" s <")[0] for line in play.heard if "< Run(" in line] == ["3"]
 
 
-def test_no_alternative_answers_a_cause_that_has_merged_with_an_answered_one() -> None:
-    # L11, L18: r1 has answered the first cause, and r2 joins the second cause to it. So r0 may not follow r3.
+def test_no_rule_answers_a_cause_that_has_merged_with_an_answered_cause() -> None:
+    # L11, L18: r1 has answered the first cause, and r2 joins the second cause to the first. So after r3 resigns, r0
+    # must not run.
     rules = (
         RuleOf(when=on("s0"), writes=("v0",)),
         RuleOf(when=on("s2"), writes=("v0",)),
@@ -683,9 +696,9 @@ def test_no_alternative_answers_a_cause_that_has_merged_with_an_answered_one() -
     assert runs(play) == ["r1", "r2", "r3"]
 
 
-def test_a_rival_that_takes_an_input_of_another_group_has_its_patience_from_that_moment() -> None:
-    # L16: r2 stands by when r1 puts it under pressure at 0 s. The activation that it then gets waits for r1's group in
-    # its place, and is under pressure at once. So both are over at 1 s.
+def test_a_rival_that_takes_an_input_of_another_group_is_under_pressure_from_that_moment() -> None:
+    # L16: r2 stands by when r1 puts it under pressure at 0 s. Then r2 gets an activation, which takes the place of the
+    # stand-by and comes under pressure immediately. So the patience of both ends at 1 s.
     rules = (
         RuleOf(when=on("s1", "s2"), emits=("s0",)),
         RuleOf(when=on("s2"), writes=("v0",)),
@@ -696,9 +709,9 @@ def test_a_rival_that_takes_an_input_of_another_group_has_its_patience_from_that
     assert [line.split(" s <")[0] for line in play.heard if "< Run(" in line] == ["1"]
 
 
-def test_rules_that_share_a_half_may_give_its_spike_up_one_after_another() -> None:
-    # L16: r0, r1 and r2 come under pressure for the second s0 at different moments, while others wait for them. When the
-    # half judges them next, the patience of all is over, and the first of them was the last that kept the spike there.
+def test_several_rules_can_give_up_a_shared_spike_one_after_another() -> None:
+    # L16: r0, r1 and r2 come under pressure for the second s0 at different moments. When the engine judges them next,
+    # the patience of all three is over. The first rule that gives the spike up can remove it from their shared table.
     odd = ((Want("s0"), Want("s1", where="odd")),)
     rules = (
         RuleOf(when=((Want("s0", max_age=None), Want("s1")),), writes=("v0",), acts=(Act(seconds=2.0),)),
@@ -717,7 +730,8 @@ def test_rules_that_share_a_half_may_give_its_spike_up_one_after_another() -> No
 
 
 def test_activations_that_wait_for_one_rule_to_recover_ask_in_the_same_instant() -> None:
-    # L15: r0 recovers to the weight of r1 at 3.5 s. Two of its activations wait for this moment, from different times on.
+    # L15: at 3.5 s, r0 has recovered to the weight of r1. Two activations of r0 wait for this moment, but since
+    # different times.
     ripe = ((Want("s0", min_age=1.0),),)
     again = (Act(((0.0, ("emit", "s0", 2)),)),)
     rules = (
@@ -728,8 +742,8 @@ def test_activations_that_wait_for_one_rule_to_recover_ask_in_the_same_instant()
     assert difference(World(S3[:1], V1, rules, inputs)) == ""
 
 
-def test_faults_of_one_clause_are_reported_in_the_order_of_their_calls() -> None:
-    # L5: r1 raises choosy's fault first, but r0 is declared first, and raised fussy's fault before choosy's.
+def test_predicates_that_fail_are_reported_rule_by_rule_in_the_order_of_their_calls() -> None:
+    # L5: `choosy` first fails for r1. But r0 is declared first, and for r0 `fussy` fails before `choosy`.
     both = "fussy choosy"
     world = World(
         S3,

@@ -1,4 +1,4 @@
-"""A set of stuck activations counts its members by rule."""
+"""The set of stuck activations counts the activations of each rule."""
 
 from __future__ import annotations
 
@@ -8,7 +8,7 @@ from ravestate.engine.activation import Activation
 from ravestate.engine.stuck import Stuck
 
 
-def test_a_member_counts_once_and_leaves_once() -> None:
+def test_an_activation_that_is_added_or_removed_twice_counts_once() -> None:
     m = rs.Module("m")
     writer(m, "rule", m.signal("a"), output(m))
     clause = rs.compile(m).rule_plan("m:rule").clauses[0]

@@ -18,7 +18,7 @@ from repo.snippets import Block, blocks_in, save
 
 ROOT = Path(__file__).parents[2]
 LOADED = re.compile(r"^WARNING ravestate: rule .* blocked the loop .*\n", re.MULTILINE)
-"""Ignore this warning, because only a busy machine prints it."""
+"""A warning that the tests ignore, because only a busy machine causes it."""
 PAGES = [
     file
     for file in [ROOT / "README.md", *sorted((ROOT / "docs").rglob("*.md"))]

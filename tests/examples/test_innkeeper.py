@@ -38,5 +38,5 @@ def test_the_innkeepers_frown_fades_after_a_while() -> None:
     with simulate(inn, settings={"idle": {"bored_after": 4, "answer_time": 12}}) as sim:
         sim.say("What an awful inn.")
         assert sim.read(inn.face) == "frowning"
-        sim.advance(20)  # meanwhile, the innkeeper waits for an answer to her question
+        sim.advance(20)  # in this time, the innkeeper waits for an answer to her question
         assert sim.read(inn.face) == "neutral"

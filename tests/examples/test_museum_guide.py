@@ -30,7 +30,7 @@ def test_words_without_a_gesture_are_answered_after_the_patience() -> None:
         assert len(sim.said) == 1
 
 
-def test_the_head_turns_at_once_to_the_picture_that_the_visitor_points_at() -> None:
+def test_the_head_immediately_turns_to_the_picture_that_the_visitor_points_at() -> None:
     with simulate(museum) as sim:
         sim.emit(museum.pointed, "delft")
         assert sim.read(museum.gaze) == "delft"

@@ -26,7 +26,7 @@ def test_an_answer_ends_the_repetition() -> None:
         assert asked(sim) == 1
 
 
-def test_after_a_wrong_answer_the_user_may_try_again() -> None:
+def test_after_a_wrong_answer_the_user_can_try_again() -> None:
     with simulate(quiz) as sim:
         sim.say("Venus")
         sim.say("Mercury")

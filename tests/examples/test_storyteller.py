@@ -15,7 +15,7 @@ def test_a_story_is_told_to_its_end() -> None:
         assert sim.read(storyteller.told) == 0
 
 
-def test_the_users_words_interrupt_the_story_and_are_answered_at_once() -> None:
+def test_the_users_words_interrupt_the_story_and_are_answered_immediately() -> None:
     with simulate(storyteller) as sim:
         sim.say("Tell me a story.")
         sim.advance(4)

@@ -1,4 +1,4 @@
-"""The user's acts. `tests/quality` measures how many sentences are understood."""
+"""Dialogue acts of the user, such as a greeting. `tests/quality` measures how many sentences are understood."""
 
 import pytest
 
@@ -18,7 +18,7 @@ EXAMPLES = {
 
 @pytest.fixture(autouse=True)
 def lexicon(monkeypatch: pytest.MonkeyPatch) -> None:
-    """Without the model: the examples alone count."""
+    """Use a matcher that has not loaded the model, so only its exact examples are recognised."""
     matcher = Matcher(EXAMPLES, ["I stopped smoking"])
     monkeypatch.setattr(room, "bundled_matcher", lambda _: matcher)
 
@@ -44,7 +44,9 @@ def lexicon(monkeypatch: pytest.MonkeyPatch) -> None:
         ("🙂", ""),
     ],
 )
-def test_short_examples_are_found_before_other_words_and_all_others_whole(text: str, found: str) -> None:
+def test_a_short_example_can_begin_a_sentence_and_a_longer_one_must_be_the_whole_sentence(
+    text: str, found: str
+) -> None:
     assert " ".join(sorted(acts([text]))) == found
 
 
@@ -64,17 +66,19 @@ def test_short_examples_are_found_before_other_words_and_all_others_whole(text: 
         ("greeting", [], False),
     ],
 )
-def test_an_act_stands_alone_beside_courtesies_and_a_few_words(act: str, sentences: list[str], alone: bool) -> None:
+def test_only_is_true_if_nothing_but_courtesies_and_a_few_words_surround_an_act(
+    act: str, sentences: list[str], alone: bool
+) -> None:
     assert only(act, sentences) is alone
 
 
 @pytest.mark.parametrize("text", ["x" * 1_000_000, "thank you " * 200_000, "bye " * 100_000, "," * 100_000, "شكرا"])
-def test_any_text_is_taken(text: str) -> None:
+def test_any_text_is_handled_without_an_error(text: str) -> None:
     acts(heard(text))
     only("farewell", heard(text))
 
 
-def test_a_sentence_is_matched_once_for_all_skills(monkeypatch: pytest.MonkeyPatch) -> None:
+def test_each_sentence_is_matched_only_once(monkeypatch: pytest.MonkeyPatch) -> None:
     matcher = Matcher(EXAMPLES)
     matcher.load()
     runs: list[int] = []

@@ -1,4 +1,4 @@
-"""The agent's name stands for *you*, or only calls the agent."""
+"""In a sentence, the agent's name either means *you* or only addresses the agent."""
 
 from __future__ import annotations
 
@@ -24,5 +24,5 @@ from ravestate.language.addressing import addressed
         ("", ""),
     ],
 )
-def test_a_name_stands_for_you_unless_it_only_calls(sentence: str, meaning: str) -> None:
+def test_the_agents_name_becomes_you_unless_it_only_addresses_the_agent(sentence: str, meaning: str) -> None:
     assert addressed(sentence, ["Robin", ""]) == meaning

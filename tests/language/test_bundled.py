@@ -1,4 +1,4 @@
-"""The complete agent without the packages that hold its models."""
+"""The complete agent without the packages that contain its models."""
 
 import json
 import subprocess
@@ -51,7 +51,7 @@ SAID = [
 ]  # fmt: skip
 
 
-def test_without_the_models_one_warning_at_the_start_says_what_to_type_and_the_agent_talks(
+def test_without_the_models_the_agent_talks_and_one_warning_says_what_to_install(
     tmp_path: Path,
 ) -> None:
     command = [sys.executable, "-c", HIDING, str(tmp_path / "index.sqlite"), *SAID]

@@ -1,4 +1,4 @@
-"""The cache of computed arrays: its size, and which files it keeps."""
+"""The cache of computed arrays limits its size, removes unused files, and replaces broken files."""
 
 import errno
 import os
@@ -13,32 +13,32 @@ from ravestate.language.cache import cached, mapped
 
 @pytest.fixture(autouse=True)
 def folder(monkeypatch: pytest.MonkeyPatch, tmp_path: Path) -> Path:
-    """An empty cache."""
+    """The folder of an empty cache."""
     monkeypatch.setattr(cache, "user_folder", lambda kind: tmp_path)
     return tmp_path / "vectors"
 
 
 def computed(key: object) -> bool:
-    """Return whether the array of a key was computed, not read."""
+    """Return whether the array of a key had to be computed, because it was not in the cache."""
     calls: list[object] = []
     cached(key, lambda: calls.append(key) or {"array": np.zeros(10)})
     return bool(calls)
 
 
-def test_files_that_nobody_reads_any_more_are_removed(folder: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+def test_the_files_that_were_not_read_for_longest_are_removed(folder: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     for age, key in enumerate(("oldest", "older", "old")):
         before = set(folder.glob("*"))
         assert computed(key)
         [file] = {*folder.iterdir()} - before
         os.utime(file, (age, age))
     monkeypatch.setattr(cache, "BYTES", 3 * file.stat().st_size)
-    assert not computed("oldest")  # so it is the newest now
+    assert not computed("oldest")  # this read makes its file the newest
     assert computed("new")
     assert [computed(key) for key in ("oldest", "old", "new")] == [False, False, False]
     assert computed("older")
 
 
-def test_many_small_files_do_not_push_out_a_large_one() -> None:
+def test_many_small_files_do_not_displace_a_large_file() -> None:
     cached("large", lambda: {"array": np.zeros(100_000)})
     for number in range(150):
         assert computed(number)
@@ -46,7 +46,7 @@ def test_many_small_files_do_not_push_out_a_large_one() -> None:
     assert not computed(0)
 
 
-def test_a_map_reads_the_file_of_the_first_call() -> None:
+def test_a_memory_map_reads_the_file_that_the_first_call_has_written() -> None:
     calls: list[int] = []
 
     def compute() -> np.ndarray:
@@ -60,7 +60,7 @@ def test_a_map_reads_the_file_of_the_first_call() -> None:
 
 
 @pytest.mark.parametrize("damage", ["short", "header", "zip", "data"])
-def test_a_broken_map_is_made_again(folder: Path, damage: str) -> None:
+def test_a_broken_memory_map_is_computed_again(folder: Path, damage: str) -> None:
     mapped("map", lambda: np.arange(6))
     [file] = folder.glob("*.npy")
     good = file.read_bytes()
@@ -92,7 +92,7 @@ def test_a_write_that_fails_leaves_no_file(folder: Path, monkeypatch: pytest.Mon
     assert list(folder.iterdir()) == []
 
 
-def test_a_file_that_another_process_removes_in_the_meantime_causes_no_error(monkeypatch: pytest.MonkeyPatch) -> None:
+def test_a_file_that_another_process_removes_meanwhile_causes_no_error(monkeypatch: pytest.MonkeyPatch) -> None:
     def gone(_: Path) -> None:
         raise FileNotFoundError
 
@@ -101,7 +101,7 @@ def test_a_file_that_another_process_removes_in_the_meantime_causes_no_error(mon
     assert isinstance(mapped("map", lambda: np.arange(6)), np.memmap)
 
 
-def test_a_map_that_cannot_be_written_is_made_only_once(folder: Path) -> None:
+def test_an_array_that_cannot_be_written_to_the_cache_is_computed_only_once(folder: Path) -> None:
     folder.write_text("a file in the place of the folder")
     calls: list[int] = []
     for _ in range(2):

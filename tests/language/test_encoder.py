@@ -1,4 +1,4 @@
-"""The encoder: each sentence is encoded once, for all readers."""
+"""The encoder encodes each sentence only once, even if several threads ask for it."""
 
 from __future__ import annotations
 
@@ -16,7 +16,7 @@ from ravestate.language.model import SentenceModel
 
 @pytest.fixture
 def runs(monkeypatch: pytest.MonkeyPatch) -> list[list[str]]:
-    """Note the sentences of each run of the model."""
+    """The sentences that each run of the model gets."""
     noted: list[list[str]] = []
     run = SentenceModel.run
 
@@ -28,7 +28,7 @@ def runs(monkeypatch: pytest.MonkeyPatch) -> list[list[str]]:
     return noted
 
 
-def test_a_sentence_that_is_known_is_not_encoded_again(runs: list[list[str]]) -> None:
+def test_a_known_sentence_is_not_encoded_again(runs: list[list[str]]) -> None:
     encoder = Encoder()
     first = encoder.encode(["the kettle sings", "the kettle hums"])
     again = encoder.encode(["the kettle hums", "the kettle sings"])
@@ -41,7 +41,7 @@ def test_a_vector_does_not_depend_on_the_other_sentences() -> None:
     assert np.array_equal(alone[0], among[1])
 
 
-def test_threads_that_ask_for_one_sentence_at_once_share_a_run(runs: list[list[str]]) -> None:
+def test_threads_that_ask_for_the_same_sentence_share_a_run(runs: list[list[str]]) -> None:
     encoder = Encoder()
     encoder.load()
     threads, entered = 4, threading.Barrier(4, timeout=10)
@@ -56,7 +56,7 @@ def test_threads_that_ask_for_one_sentence_at_once_share_a_run(runs: list[list[s
     assert sum("a raven on the roof" in texts for texts in runs) == 1
 
 
-def test_an_error_in_one_thread_leaves_the_sentence_to_the_next(monkeypatch: pytest.MonkeyPatch) -> None:
+def test_after_an_error_the_next_call_encodes_the_sentence(monkeypatch: pytest.MonkeyPatch) -> None:
     encoder = Encoder()
     encoder.load()
     run = SentenceModel.run

@@ -1,4 +1,4 @@
-"""The factor of a kernel gives its inverse, also where the kernel is divided many times."""
+"""The factor of a kernel gives the inverse of the kernel, even if the kernel is divided into many blocks."""
 
 import numpy as np
 import pytest
@@ -9,7 +9,7 @@ from ravestate.language.factor import BLOCK, factor
 @pytest.mark.parametrize("size", [1, BLOCK, BLOCK + 1, 5 * BLOCK + 3])
 def test_the_product_of_the_factor_with_itself_is_the_inverse(size: int) -> None:
     points = np.random.default_rng(0).standard_normal((size, 8)).astype(np.float32)
-    # Like the kernel of a matcher: all similarities are positive, and many examples are almost alike.
+    # As in the kernel of a matcher, all similarities are positive, and many examples are almost equal.
     kernel = np.exp(-np.square(points[:, None] - points).sum(axis=2) / 50) + np.float32(0.1)
     kernel[np.diag_indices(size)] += np.float32(0.1)
     found = factor(kernel)

@@ -1,4 +1,4 @@
-"""Feelings in an utterance. `tests/quality` measures how many sentences are understood."""
+"""Feelings that a user's words express. `tests/quality` measures how many sentences are understood."""
 
 import pytest
 
@@ -15,7 +15,7 @@ EXAMPLES = {
 
 @pytest.fixture(autouse=True)
 def lexicon(monkeypatch: pytest.MonkeyPatch) -> None:
-    """Without the model: the examples alone count."""
+    """Use a matcher that has not loaded the model, so only its exact examples are recognised."""
     matcher = Matcher(EXAMPLES)
     monkeypatch.setattr(room, "bundled_matcher", lambda _: matcher)
 
@@ -34,5 +34,5 @@ def lexicon(monkeypatch: pytest.MonkeyPatch) -> None:
         ("", ""),
     ],
 )
-def test_each_clause_counts_unless_it_is_asked_or_a_condition(text: str, found: str) -> None:
+def test_each_clause_counts_unless_it_is_a_question_or_a_condition(text: str, found: str) -> None:
     assert " ".join(sorted(feelings([text]))) == found

@@ -1,4 +1,4 @@
-"""Memory goes back to the system where that is possible; elsewhere the call does nothing."""
+"""Free memory is returned to the operating system if the C library can do this."""
 
 from __future__ import annotations
 
@@ -12,7 +12,7 @@ from ravestate.language import heap
 from ravestate.language.heap import give_back, keep_few_heaps, note_load
 
 
-def test_the_c_library_returns_the_memory_after_a_load(monkeypatch: pytest.MonkeyPatch) -> None:
+def test_free_memory_is_returned_to_the_system_after_a_load(monkeypatch: pytest.MonkeyPatch) -> None:
     returned = threading.Event()
 
     class Library:
@@ -29,18 +29,18 @@ def test_the_c_library_returns_the_memory_after_a_load(monkeypatch: pytest.Monke
     assert returned.wait(60)
 
 
-def test_another_load_delays_the_return_of_memory(monkeypatch: pytest.MonkeyPatch) -> None:
+def test_a_second_load_delays_the_return_of_memory(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr(heap, "SETTLED", 3600.0)
     note_load()
     [first] = heap._pending
     note_load()
     [second] = heap._pending
-    assert first.finished.is_set()  # it was cancelled
+    assert first.finished.is_set()  # the second load has cancelled the first timer
     assert second.is_alive() and second.daemon
     second.cancel()
 
 
-def test_the_users_environment_takes_precedence(monkeypatch: pytest.MonkeyPatch) -> None:
+def test_environment_variables_of_malloc_take_precedence(monkeypatch: pytest.MonkeyPatch) -> None:
     chosen: list[tuple[int, int]] = []
 
     class Library:
@@ -62,7 +62,9 @@ def test_the_users_environment_takes_precedence(monkeypatch: pytest.MonkeyPatch)
 
 
 @pytest.mark.parametrize("error", [OSError, TypeError, AttributeError])
-def test_another_system_keeps_the_memory(error: type[Exception], monkeypatch: pytest.MonkeyPatch) -> None:
+def test_without_such_a_c_library_the_functions_do_nothing(
+    error: type[Exception], monkeypatch: pytest.MonkeyPatch
+) -> None:
     def refuse(_: Any) -> None:
         raise error
 

@@ -1,4 +1,4 @@
-"""The matcher: classes, none, confidence, and one run of the encoder for all matchers."""
+"""A matcher finds the class of a sentence, or none, with a score. All matchers share one run of the encoder."""
 
 from collections.abc import Sequence
 from pathlib import Path
@@ -51,13 +51,13 @@ def test_the_matcher_is_surer_of_its_examples_than_of_similar_sentences(matcher:
     assert example.example == "when do you open"
 
 
-def test_all_classes_and_none_are_ranked(matcher: Matcher) -> None:
+def test_the_ranking_contains_all_classes_and_none(matcher: Matcher) -> None:
     (first, second, third) = matcher.ranked("when do you open")
     assert {first.name, second.name, third.name} == {"hours", "table", ""}
     assert first.margin > 0 > second.margin >= third.margin
 
 
-def test_a_matcher_that_has_not_learnt_recognises_its_examples_word_for_word() -> None:
+def test_a_matcher_that_is_not_loaded_recognises_only_its_exact_examples() -> None:
     matcher = Matcher(EXAMPLES, NONE)
     assert not matcher.loaded
     match = matcher.match("When do u open?")
@@ -66,14 +66,14 @@ def test_a_matcher_that_has_not_learnt_recognises_its_examples_word_for_word() -
     assert matcher.match("I like green tea") is None
 
 
-def test_an_example_that_resembles_another_class_is_confused() -> None:
+def test_confusions_lists_an_example_that_resembles_another_class() -> None:
     matcher = Matcher({**EXAMPLES, "late": ["until when are you open", "how long are you open"]}, NONE)
     assert ("until when are you open", "late", "hours") in matcher.confusions()
 
 
 @pytest.fixture
 def runs(monkeypatch: pytest.MonkeyPatch) -> list[list[str]]:
-    """The texts of each run of a model."""
+    """The texts that each run of the model gets."""
     seen: list[list[str]] = []
     run = SentenceModel.run
 
@@ -97,7 +97,7 @@ def test_each_sentence_of_an_utterance_is_encoded_once_for_all_matchers(
     assert len(runs) == len({text for texts in runs for text in texts})
 
 
-def test_vectors_of_examples_come_from_a_file_the_next_time(
+def test_the_vectors_of_examples_are_computed_once_and_later_read_from_a_file(
     monkeypatch: pytest.MonkeyPatch, tmp_path: Path, runs: list[list[str]]
 ) -> None:
     monkeypatch.setattr(cache_module, "user_folder", lambda kind: tmp_path)

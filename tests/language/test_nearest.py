@@ -1,4 +1,4 @@
-"""The index of single examples."""
+"""`Nearest` finds the examples that are most similar to a sentence."""
 
 from __future__ import annotations
 
@@ -26,7 +26,7 @@ def index() -> Nearest:
         ("i seem so tired today", 4),
     ],
 )
-def test_the_nearest_example_has_the_meaning_and_the_persons_of_the_sentence(
+def test_the_nearest_example_has_the_same_meaning_and_the_same_persons(
     index: Nearest, sentence: str, example: int
 ) -> None:
     near = index.nearest([sentence])
@@ -35,15 +35,15 @@ def test_the_nearest_example_has_the_meaning_and_the_persons_of_the_sentence(
     assert [one.score for one in near] == sorted((one.score for one in near), reverse=True)
 
 
-def test_equal_sentences_score_one(index: Nearest) -> None:
+def test_a_sentence_scores_1_for_an_equal_example(index: Nearest) -> None:
     assert index.nearest(["I sold my old bike!"], most=1)[0].score == pytest.approx(1.0, abs=0.01)
 
 
-def test_a_question_is_less_like_a_statement(index: Nearest) -> None:
+def test_a_question_is_less_similar_to_a_statement_than_a_statement_is(index: Nearest) -> None:
     told, asked = index.nearest(["my bike was stolen"], most=1), index.nearest(["my bike was stolen?"], most=1)
     assert asked[0].score < told[0].score
 
 
-def test_no_sentence_finds_nothing(index: Nearest) -> None:
+def test_without_sentences_or_examples_nothing_is_found(index: Nearest) -> None:
     assert index.nearest([]) == []
     assert Nearest([]).nearest(["anything"]) == []

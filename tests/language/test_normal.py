@@ -1,4 +1,4 @@
-"""The normal form: typed English as written English, with offsets."""
+"""The normal form turns typed English into correct written English, and knows the original positions."""
 
 import threading
 from concurrent.futures import ThreadPoolExecutor
@@ -62,11 +62,11 @@ def lexicon() -> None:
         ("", ""),
     ],
 )
-def test_typed_english_becomes_written_english(typed: str, written: str) -> None:
+def test_carelessly_typed_english_becomes_correct_english(typed: str, written: str) -> None:
     assert normalise(typed).text == written
 
 
-def test_names_are_not_corrected_and_get_their_capitals() -> None:
+def test_names_are_not_corrected_and_get_a_capital() -> None:
     assert normalise("hello freinda how are you", ["Freinda"]).text == "Hello Freinda. How are you?"
     assert normalise("my name is kira and i come from hildesheim").text == "My name is Kira and I come from Hildesheim."
 
@@ -78,7 +78,7 @@ SENTENCES = sorted(
 )
 
 
-def test_a_well_written_sentence_stays_as_it_is() -> None:
+def test_a_correct_sentence_stays_as_it_is() -> None:
     assert len(SENTENCES) > 100
     assert [(text, normalise(text).text) for text in SENTENCES if normalise(text).text != text] == []
 
@@ -128,12 +128,12 @@ def test_offsets_never_decrease_and_lie_within_the_original(text: str) -> None:
 
 
 @given(texts)
-def test_a_normal_form_is_its_own_normal_form(text: str) -> None:
+def test_normalising_a_normal_form_does_not_change_it(text: str) -> None:
     once = normalise(text).text
     assert normalise(once).text == once
 
 
-def test_a_word_knows_its_place_in_the_original() -> None:
+def test_each_word_has_its_position_in_the_original() -> None:
     mended = normalise("u dont like my brohter")
     for word, typed in (("You", "u"), ("don't", "dont"), ("like", "like"), ("brother", "brohter")):
         start = mended.text.index(word)
@@ -142,23 +142,23 @@ def test_a_word_knows_its_place_in_the_original() -> None:
     assert mended.adds(len(mended.text) - 1, len(mended.text))
 
 
-def test_the_typed_capitals_stay_where_a_word_differs_in_nothing_else() -> None:
+def test_a_word_that_differs_only_in_capitals_keeps_the_typed_capitals() -> None:
     assert normalise("i live in munich, u KNOW").typed == "i live in munich, you KNOW."
 
 
-def test_the_plain_form_writes_out_short_forms() -> None:
+def test_the_plain_form_has_no_contractions() -> None:
     assert plain("What's up, u CAN'T?") == "what is up you can not"
     assert plain("Im here") == plain("I am here.")
 
 
-def test_rules_that_read_an_utterance_share_its_normal_form(monkeypatch: pytest.MonkeyPatch) -> None:
+def test_the_normal_form_of_an_utterance_is_computed_once_for_all_rules(monkeypatch: pytest.MonkeyPatch) -> None:
     first = normalise("hullo rosie its me", ["Rosie"])
-    monkeypatch.setattr(normal, "_once", None)  # nothing is computed again
+    monkeypatch.setattr(normal, "_once", None)  # computing it again would fail
     assert normalise("hullo rosie its me", ("Rosie",)) is first
 
 
 def test_a_long_text_does_not_delay_other_texts(monkeypatch: pytest.MonkeyPatch) -> None:
-    """Contexts share the normal forms. A text of 2,000 characters takes 0.1 s, and other users do not wait for it."""
+    """Contexts share the normal forms. A text of 2,000 characters takes 0.1 s, and other users must not wait for it."""
     begun, go_on = threading.Event(), threading.Event()
     compute = normal._normalised
 
@@ -177,7 +177,7 @@ def test_a_long_text_does_not_delay_other_texts(monkeypatch: pytest.MonkeyPatch)
         assert other.result(60).text == "A text of another user."
 
 
-def test_rules_that_read_an_utterance_at_the_same_time_compute_its_normal_form_once(
+def test_simultaneous_rules_compute_the_normal_form_of_an_utterance_only_once(
     monkeypatch: pytest.MonkeyPatch,
 ) -> None:
     computed: list[str] = []

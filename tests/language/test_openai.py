@@ -1,4 +1,4 @@
-"""The client of OpenAI-compatible servers, against a server that can do everything wrong."""
+"""The client of OpenAI-compatible servers, tested with a server that can make every mistake."""
 
 import asyncio
 import json
@@ -21,7 +21,7 @@ Conversation = Callable[..., list[str]]
 
 @pytest.fixture
 def converse(chat_server: Any) -> Conversation:
-    """Ask a server with this answer; return the pieces."""
+    """A function that asks a server which gives a certain answer, and returns the pieces."""
 
     def run(answer: Callable[[Any], Awaitable[None]], *, seen: list[Any] | None = None, **options: Any) -> list[str]:
         async def main() -> list[str]:
@@ -67,12 +67,12 @@ asyncio.run(main())
 """
 
 
-def test_all_is_imported_off_the_loop_before_the_first_request() -> None:
+def test_load_imports_everything_that_the_first_request_needs() -> None:
     done = subprocess.run([sys.executable, "-c", FIRST_REQUEST], capture_output=True, text=True, check=True)
     assert (done.stdout, done.stderr) == ("\n", "")
 
 
-def test_it_asks_and_yields_the_pieces(converse: Conversation) -> None:
+def test_the_request_has_all_options_and_the_pieces_of_the_answer_are_yielded(converse: Conversation) -> None:
     seen: list[Any] = []
     pieces = converse(
         hello, seen=seen, api_key=SecretStr("k3y"), max_tokens=7, temperature=0.5, seed=3, stop=["\n"], extra={"a": 1}
@@ -93,7 +93,7 @@ def test_it_asks_and_yields_the_pieces(converse: Conversation) -> None:
     }
 
 
-def test_without_a_key_none_is_sent(converse: Conversation) -> None:
+def test_options_that_are_not_set_are_not_sent(converse: Conversation) -> None:
     seen: list[Any] = []
     converse(hello, seen=seen)
     assert "authorization" not in seen[0].headers
@@ -101,7 +101,7 @@ def test_without_a_key_none_is_sent(converse: Conversation) -> None:
     assert "stop" not in seen[0].body
 
 
-def test_pieces_come_one_by_one(chat_server: Any) -> None:
+def test_each_piece_is_yielded_as_soon_as_it_arrives(chat_server: Any) -> None:
     async def main() -> None:
         go_on = asyncio.Event()
 
@@ -157,7 +157,7 @@ def test_leaving_the_stream_closes_the_connection(chat_server: Any, how: str) ->
     asyncio.run(main())
 
 
-def test_a_backend_is_used_again(chat_server: Any) -> None:
+def test_a_backend_can_be_used_again_even_after_close(chat_server: Any) -> None:
     async def main() -> None:
         async with chat_server(hello).running() as server:
             backend = OpenAIBackend(server.url + "/", "tiny")
@@ -173,7 +173,7 @@ def test_a_backend_is_used_again(chat_server: Any) -> None:
     asyncio.run(main())
 
 
-def test_a_server_that_cannot_stream_is_understood(converse: Conversation) -> None:
+def test_an_answer_from_a_server_that_does_not_stream_is_understood(converse: Conversation) -> None:
     async def answer(talk: Any) -> None:
         await talk.head(kind="application/json; charset=utf-8")
         await talk.raw(json.dumps({"choices": [{"message": {"content": "Hi there"}}]}))
@@ -181,7 +181,7 @@ def test_a_server_that_cannot_stream_is_understood(converse: Conversation) -> No
     assert converse(answer) == ["Hi there"]
 
 
-def test_events_in_any_shape_are_understood(converse: Conversation) -> None:
+def test_events_are_understood_in_every_form_that_servers_send(converse: Conversation) -> None:
     async def answer(talk: Any) -> None:
         await talk.head()
         event = b'data:{"choices":[{"delta":{"content":"\xc3\xa4","reasoning":"hm"}}]}\r\n\r\n'
@@ -193,7 +193,7 @@ def test_events_in_any_shape_are_understood(converse: Conversation) -> None:
 
 
 @pytest.mark.parametrize(("parameter", "renamed"), [("max_tokens", "max_completion_tokens"), ("temperature", None)])
-def test_a_parameter_that_is_not_supported_is_withdrawn(
+def test_a_parameter_that_the_server_does_not_support_is_left_out(
     converse: Conversation, parameter: str, renamed: str | None
 ) -> None:
     async def answer(talk: Any) -> None:
@@ -212,7 +212,7 @@ def test_a_parameter_that_is_not_supported_is_withdrawn(
         assert seen[1].body[renamed] == 7
 
 
-# ---------------------------------------------------------------------------------- what goes wrong
+# ---------------------------------------------------------------------------------- errors
 
 
 def refusing(status: str, body: str = "", kind: str = "application/json", **headers: str) -> Any:
@@ -260,12 +260,12 @@ PIECE = 'data: {"choices":[{"delta":{"content":"Hi"}}]}\n\n'
         (sending("x" * (3 << 20)), "sends no stream of events"),
     ],
 )  # fmt: skip
-def test_each_fault_says_what_to_check(converse: Conversation, answer: Any, message: str) -> None:
+def test_the_error_about_a_faulty_answer_says_what_to_check(converse: Conversation, answer: Any, message: str) -> None:
     with pytest.raises(PlatformError, match=f"(?s)^wildtalk: .*{message}"):
         converse(answer)
 
 
-def test_a_server_that_breaks_the_protocol(converse: Conversation) -> None:
+def test_a_server_that_does_not_speak_http_raises_an_error(converse: Conversation) -> None:
     async def answer(talk: Any) -> None:
         await talk.raw("SSH-2.0-OpenSSH\r\n")
 
@@ -273,7 +273,7 @@ def test_a_server_that_breaks_the_protocol(converse: Conversation) -> None:
         converse(answer)
 
 
-def test_a_server_that_cuts_a_measured_body(converse: Conversation) -> None:
+def test_an_answer_shorter_than_its_content_length_raises_an_error(converse: Conversation) -> None:
     async def answer(talk: Any) -> None:
         await talk.head(**{"Content-Length": "9999"})
         await talk.piece("Hi")
@@ -283,7 +283,7 @@ def test_a_server_that_cuts_a_measured_body(converse: Conversation) -> None:
 
 
 @pytest.mark.parametrize("spoken", [True, False])
-def test_a_server_that_stalls(converse: Conversation, spoken: bool) -> None:
+def test_a_server_that_sends_nothing_for_too_long_raises_an_error(converse: Conversation, spoken: bool) -> None:
     async def answer(talk: Any) -> None:
         if spoken:
             await talk.head()
@@ -294,16 +294,16 @@ def test_a_server_that_stalls(converse: Conversation, spoken: bool) -> None:
         converse(answer, read_timeout=0.05)
 
 
-def test_a_server_that_only_keeps_the_connection_open_has_stalled(converse: Conversation) -> None:
+def test_a_server_that_sends_only_comments_counts_as_stalled(converse: Conversation) -> None:
     async def answer(talk: Any) -> None:
         await talk.head()
-        await talk.gone()  # comments, for ever
+        await talk.gone()  # sends comments for ever
 
     with pytest.raises(PlatformError, match=r"stalled: nothing for 0\.05 s"):
         converse(answer, read_timeout=0.05)
 
 
-def test_a_server_that_does_not_run_is_an_error(converse: Conversation) -> None:
+def test_the_error_about_a_server_that_does_not_run_says_how_to_start_it(converse: Conversation) -> None:
     with pytest.raises(PlatformError, match=r"no server answers at http://127.0.0.1:1/v1 .*ollama serve"):
         converse(hello, base_url="http://127.0.0.1:1/v1")
 
@@ -314,12 +314,12 @@ def test_a_text_that_is_not_a_web_address_is_refused(url: str) -> None:
         OpenAIBackend(url, "tiny")
 
 
-def test_an_address_with_an_impossible_port(converse: Conversation) -> None:
+def test_an_address_with_an_impossible_port_is_refused(converse: Conversation) -> None:
     with pytest.raises(PlatformError, match="is not a web address"):
         converse(hello, base_url="http://127.0.0.1:port/v1")
 
 
-def test_secrets_are_not_revealed(converse: Conversation) -> None:
+def test_errors_do_not_show_secrets(converse: Conversation) -> None:
     refusal = refusing("401 Unauthorized", '{"error": {"message": "no such key: s3cret"}}')
     with pytest.raises(PlatformError, match=r"no such key: \*\*\*\): check wildtalk.api_key") as failure:
         converse(refusal, api_key=SecretStr("s3cret"))
@@ -328,12 +328,12 @@ def test_secrets_are_not_revealed(converse: Conversation) -> None:
         converse(refusal, base_url="http://me:s3cret@127.0.0.1:1/v1")
 
 
-def test_a_key_that_is_none(converse: Conversation) -> None:
+def test_a_key_with_impossible_characters_is_refused(converse: Conversation) -> None:
     with pytest.raises(PlatformError, match="api_key has characters that no key has"):
         converse(hello, api_key=SecretStr("a\nb"))
 
 
-def test_without_its_library_it_says_what_to_install(monkeypatch: pytest.MonkeyPatch) -> None:
+def test_without_httpx2_the_error_says_what_to_install(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setitem(sys.modules, "httpx2", None)
     with pytest.raises(PlatformError, match=r"needs httpx2: pip install 'ravestate\[wildtalk\]'"):
         asyncio.run(OpenAIBackend("http://localhost/v1", "tiny").load())

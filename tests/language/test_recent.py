@@ -1,4 +1,4 @@
-"""Only the latest results are kept."""
+"""`keep_latest` keeps only the latest entries of a cache."""
 
 from ravestate.language.recent import keep_latest
 
@@ -9,13 +9,13 @@ def test_the_oldest_entries_are_dropped() -> None:
     assert list(kept.items()) == [("b", 2), ("c", 3), ("d", 4)]
 
 
-def test_an_entry_that_comes_again_counts_as_new() -> None:
+def test_an_entry_that_is_added_again_counts_as_new() -> None:
     kept = {"a": 1, "b": 2, "c": 3}
     keep_latest(kept, {"a": 5, "d": 4}, 3)
     assert list(kept.items()) == [("c", 3), ("a", 5), ("d", 4)]
 
 
-def test_more_new_entries_than_may_be_kept() -> None:
+def test_of_too_many_new_entries_the_last_are_kept() -> None:
     kept = {"a": 1}
     keep_latest(kept, {"b": 2, "c": 3, "d": 4}, 2)
     assert kept == {"c": 3, "d": 4}

@@ -1,4 +1,4 @@
-"""Packed vectors: their products are those of the unpacked vectors."""
+"""Packed vectors have the same products as the unpacked vectors."""
 
 from __future__ import annotations
 
@@ -13,7 +13,7 @@ def packed() -> np.ndarray:
     return np.random.default_rng(1).integers(-63, 64, (2 * BLOCK + 7, 48)).astype(np.int8)
 
 
-def test_products_of_packed_rows_are_those_of_vectors_of_length_one(packed: np.ndarray) -> None:
+def test_packed_rows_count_as_vectors_of_length_1_in_products(packed: np.ndarray) -> None:
     vectors = np.random.default_rng(2).normal(size=(3, 48)).astype(np.float32)
     long = packed.astype(np.float32)
     expected = vectors @ (long / np.linalg.norm(long, axis=1, keepdims=True)).T
@@ -22,12 +22,12 @@ def test_products_of_packed_rows_are_those_of_vectors_of_length_one(packed: np.n
     assert products(vectors, rows.unpacked()) == pytest.approx(expected, abs=1e-5)
 
 
-def test_some_rows_are_the_rows_at_these_places(packed: np.ndarray) -> None:
+def test_some_returns_the_rows_at_the_given_places(packed: np.ndarray) -> None:
     rows, places = Rows(packed), [BLOCK + 3, 0, BLOCK + 3]
     assert (rows.some(places).unpacked() == rows.unpacked()[places]).all()
     assert len(rows.some([])) == 0
 
 
-def test_no_vectors_and_no_rows_have_no_products(packed: np.ndarray) -> None:
+def test_without_vectors_or_rows_there_are_no_products(packed: np.ndarray) -> None:
     assert Rows(packed).products(np.zeros((0, 48), np.float32)).shape == (0, len(packed))
     assert Rows(packed[:0]).products(np.zeros((2, 48), np.float32)).shape == (2, 0)

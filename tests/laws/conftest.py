@@ -1,4 +1,4 @@
-"""The fixture of the laws' tests: each story is played on the bare engine and on the runtime."""
+"""The fixture for the tests of the laws. Each test runs on the bare engine and on the runtime."""
 
 from __future__ import annotations
 
@@ -13,5 +13,5 @@ from scenarios.driver import Driver
 
 @pytest.fixture(params=[Driver, simulate], ids=["engine", "runtime"])
 def play(request: pytest.FixtureRequest) -> Callable[..., Any]:
-    """Return the way to begin a story: ``with play(module, ..., patience=1.0) as sim``."""
+    """Return the function that begins a simulation: ``with play(module, ..., patience=1.0) as sim``."""
     return request.param

@@ -1,8 +1,8 @@
 """A naive interpreter of the laws, with which ``properties/fuzz.py`` compares the engine.
 
 It keeps lists, has no index, and decides everything again at every moment. It shares the records of the policy
-(utilities, coherence), the events and the effects with the engine, but no other code. It leaves out laws about a
-thousand runs in one instant (L23, fairness), because the compared plays have fewer runs.
+(utilities, coherence), the events and the effects with the engine, but no other code. It leaves out the
+law about a thousand runs in one instant (L23, fairness), because the compared plays have fewer runs.
 """
 
 from __future__ import annotations
@@ -21,7 +21,7 @@ from ravestate.engine.effects import Cancel, Effect, Ended, Failed, Run
 from ravestate.errors import RuleError, RuleTimeout
 
 INSTANT = 0.5e-9
-"""Two moments that differ by at most this many seconds count as one."""
+"""The greatest difference of two times that count as one moment (seconds)."""
 
 BATCH = 100
 """The number of rules that may start without consent before the events of their runs arrive."""
@@ -52,7 +52,7 @@ class Model:
     # ------------------------------------------------------------------------------- time
 
     def receive(self, event: Any, now: float) -> None:
-        assert now == self.now, "first let the time pass"
+        assert now == self.now, "call `advance` up to this time first"
         getattr(self, f"on_{type(event).__name__.lower()}")(event)
         self.settle()
 
@@ -63,7 +63,7 @@ class Model:
         self.now = max(self.now, now)
 
     def next_deadline(self) -> float | None:
-        """Return the next time at which something may change by itself."""
+        """Return the next time at which something can change without an event."""
         times: list[float] = []
         for act in self.acts:
             if act.state in (GATHERS, READY):
@@ -76,7 +76,7 @@ class Model:
                 held = act.watch.get(clause.index, {})
                 times += [spike.born + clause.needs[n].min_age for n, spike in held.items()]
             times.append(act.due)
-        for spike in self.spikes:  # a rival in stand-by may look at it until it is too old
+        for spike in self.spikes:  # a rival in stand-by can look at it until it is too old
             times += [spike.born + need.max_age for need in spike.signal.listeners if need.detached]
         if any(act.state == READY for act in self.acts):
             plans = [rule for rule in self.policy.rule_plans if rule.cooldown]
@@ -103,7 +103,7 @@ class Model:
         return spike.born + need.max_age <= self.now
 
     def settle(self) -> None:
-        """Offer spikes to detached constraints, forget spikes that no activation can hold any more, and find the ready
+        """Offer spikes to detached constraints, drop spikes that no activation can hold any more, and find the ready
         activations."""
         for act in list(self.acts):
             if act.clause.asks_detached and act.state in (GATHERS, READY):
@@ -128,7 +128,7 @@ class Model:
         return all(act.held[n.index].born + n.min_age <= self.now for n in act.clause.needs)
 
     def look(self, act: Act, need: Any) -> None:
-        """Hold the newest live spike that fits and is old enough; else the one that is old enough first (L19)."""
+        """Hold the newest live spike that fits and is old enough, or else the first to become old enough (L19)."""
         fits = [s for s in self.spikes if s.signal is need.signal and self.fits(need, s)]
         ripe = [s for s in fits if s.born + need.min_age <= self.now]
         if ripe:
@@ -207,7 +207,7 @@ class Model:
                     written |= act.rule.slotset
                     changed = True
             elif self.consents(act):
-                break  # it reads a slot that a rule of this round may write, so it asks after that
+                break  # it reads a slot that a rule of this round may write, so it asks after this write
         return changed or len(self.acts) < count
 
     def order(self, act: Act) -> Any:
@@ -229,7 +229,7 @@ class Model:
         return all(self.goes_before(theirs, mine))
 
     def goes_before(self, theirs: Any, mine: Any) -> tuple[bool, bool]:
-        """Return whether a clause goes before another, now and in the moment after (L15)."""
+        """Return whether a clause goes before another one now, and whether it does so in the next moment (L15)."""
         (far, fast), (my_far, my_fast) = self.recovery(theirs.rule), self.recovery(mine.rule)
         weight, my_weight = theirs.rule.weight, mine.rule.weight
         utility, my_utility = theirs.utility * weight, mine.utility * my_weight
@@ -243,7 +243,7 @@ class Model:
         return self.leads(now, theirs, mine), self.leads(soon, theirs, mine)
 
     def leads(self, pairs: list[tuple[float, float]], theirs: Any, mine: Any) -> bool:
-        """Compare the first half of the pairs; if that is all 0, compare the second half."""
+        """Compare the first half of the pairs. If these are all 0, compare the second half."""
         for place, (one, other) in enumerate(pairs):
             if place == len(pairs) // 2 and any(pair != (0.0, 0.0) for pair in pairs[:place]):
                 break
@@ -252,7 +252,7 @@ class Model:
         return theirs.index < mine.index
 
     def crossing(self, mine: Any, theirs: Any) -> float:
-        """Return when a clause that is behind overtakes another clause, if both recover as now."""
+        """Return when a clause overtakes another clause that is ahead now, if both continue to recover as now."""
         (far, fast), (their_far, their_fast) = self.recovery(mine.rule), self.recovery(theirs.rule)
         closing = mine.base * fast - theirs.base * their_fast
         if closing <= 0 or theirs.base * their_far <= mine.base * far:
@@ -262,7 +262,7 @@ class Model:
         far = (began - self.ran[mine.rule.index]) * fast if fast else far
         their_far = (began - self.ran[theirs.rule.index]) * their_fast if their_fast else their_far
         turn = began + (theirs.base * their_far - mine.base * far) / closing
-        return round(turn, 9) if round(turn, 9) > self.now else turn  # to coincide with others
+        return round(turn, 9) if round(turn, 9) > self.now else turn  # so that it coincides with others
 
     # ------------------------------------------------------------------------------- consent
 
@@ -270,9 +270,10 @@ class Model:
         return not self.refusals(act)
 
     def refusals(self, act: Act, without: Iterable[Act] = (), commit: bool = True) -> set[str]:
-        """Return why groups refuse consent (L15): a slot is ``taken``, or a rival becomes ready, ``surely`` or
-        ``perhaps``. A rival that becomes ready only perhaps is pressed, or gives up (L16). With `without`, ignore the work
-        of these activations, and press no rival.
+        """Return why groups refuse consent (L15).
+
+        A slot is ``taken``, or a rival becomes ready, ``surely`` or ``perhaps``. With `commit`, a rival of the last
+        kind is pressed, or gives up (L16). Ignore the work of the activations in `without`.
         """
         reasons: set[str] = set()
         still = frozenset((act, *self.kept_by(act), *without))
@@ -296,7 +297,7 @@ class Model:
                         derivation, ended = Derivation(self, still), True
                 elif next_:
                     soon.append((rival, group))
-        for rival, group in soon if reasons else ():  # `act` keeps waiting; these are ahead from now on
+        for rival, group in soon if reasons else ():  # `act` keeps waiting; these rivals are ahead from now on
             if self.judge_rival(rival, group, derivation, reasons, commit=commit):
                 derivation, ended = Derivation(self, still), True
         if ended and reasons:
@@ -312,7 +313,7 @@ class Model:
                 if member not in self.acts or member in derivation.still:
                     continue
                 if any(set(member.firm()) <= set(older.firm()) for older in sure):
-                    continue  # an older activation that will run holds all spikes of this one
+                    continue  # an older activation that will run holds all spikes of this activation
             strength = derivation.rival(rival, member, group)
             if strength == SURE:
                 reasons.add("surely")
@@ -335,7 +336,7 @@ class Model:
         return ended
 
     def kept_by(self, act: Act) -> list[Act]:
-        """Return the activations that wait, or would wait, for this one (L16)."""
+        """Return the activations that wait, or would wait, for this activation (L16)."""
         clause, slots, groups = act.clause, act.rule.slotset, set(act.groups())
         behind: dict[Any, bool] = {}  # many activations belong to the same clause
         return [

@@ -40,7 +40,7 @@ class Derivation:
     def rival(self, clause: Any, act: Act | None, group: Group) -> int:
         """Return how a rival may become ready; `act` is None for the activation that stands by."""
         if act is None and any(self.waits_elsewhere(clause, other, group) for other in self.model.acts):
-            return NO  # an older activation waits for the group's signals in its place
+            return NO  # in place of this activation, an older one waits for the group's signals
         return self.solve(clause, act, group)
 
     def waits_elsewhere(self, clause: Any, act: Act, group: Group) -> bool:
@@ -64,8 +64,10 @@ class Derivation:
         return self.known.setdefault((signal, group, slots), NO)
 
     def viable(self, clause: Any, act: Act | None, group: Group, slots: frozenset[int]) -> int:
-        """Return how a clause may become ready, by work in `group`. Without a spike of the group it has a stake there
-        only if it waits for a signal of the group's horizon."""
+        """Return how a clause may become ready through work in `group`.
+
+        Without a spike of the group, the clause has a stake there only if it waits for a signal of the group's horizon.
+        """
         model = self.model
         model.steps += 1
         if clause.rule.index in model.retired or (act is None and group.consumed(clause.rule.slots)):
@@ -146,8 +148,10 @@ class Derivation:
         )
 
     def causes(self, signal: Any, *, wide: bool) -> set[int]:
-        """Return the rules from which a chain of effects leads to a signal; with `wide`, also a chain through detached
-        rules and constraints."""
+        """Return the rules from which a chain of effects leads to a signal.
+
+        With `wide`, the chain can also lead through detached rules and constraints.
+        """
         known = self.model.chains.get((signal, wide))
         if known is not None:
             return known

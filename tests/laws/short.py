@@ -1,4 +1,4 @@
-"""Helpers for rules of few lines, and for the contents of a trace."""
+"""Helpers that declare simple rules, and read the contents of a trace."""
 
 from __future__ import annotations
 
@@ -10,14 +10,14 @@ from ravestate.engine.trace import Born, Dropped, GaveUp, Pressed, Set, Settled,
 
 
 def output(module: rs.Module, name: str = "out") -> rs.Slot[str]:
-    """Declare a slot that signals equal values too."""
+    """Declare a slot that also signals a write of an equal value."""
     return module.slot(name, "", always=True)
 
 
 def writer(
     module: rs.Module, name: str, when: rs.Condition, *slots: rs.Slot[Any], after: float = 0.0, **options: Any
 ) -> rs.Rule[Any, Any]:
-    """Declare a rule that, after a few seconds, writes its own name into its slots."""
+    """Declare a rule that waits `after` seconds, and then writes its own name into its slots."""
 
     async def write(ctx: Any) -> None:
         if after:
@@ -37,7 +37,7 @@ def emitter(
     only_if: Callable[[Any], bool] = lambda ctx: True,
     **options: Any,
 ) -> rs.Rule[Any, Any]:
-    """Declare a rule that, after a few seconds, emits its signals if ``only_if`` is true."""
+    """Declare a rule that waits `after` seconds, and then emits its signals if `only_if` is true."""
 
     async def emit(ctx: Any) -> None:
         if after:
@@ -52,7 +52,7 @@ def emitter(
 def resigner(
     module: rs.Module, name: str, when: rs.Condition, *slots: rs.Slot[Any], after: float = 0.0, **options: Any
 ) -> rs.Rule[Any, Any]:
-    """Declare a rule that, after a few seconds, resigns."""
+    """Declare a rule that waits `after` seconds, and then resigns."""
 
     async def resign(ctx: Any) -> rs.Resign:
         if after:
@@ -65,7 +65,7 @@ def resigner(
 def hearer(
     module: rs.Module, name: str, when: rs.Condition, signal: rs.Signal[Any], heard: list[Any], **options: Any
 ) -> rs.Rule[Any, Any]:
-    """Declare a rule that only notes the payload of a signal."""
+    """Declare a rule that only adds the payload of a signal to a list."""
 
     async def hear(ctx: Any) -> None:
         heard.append(ctx.payload(signal))
@@ -122,7 +122,7 @@ def drops(sim: Any, signal: rs.Signal[Any]) -> list[Dropped]:
 
 
 def pathways(policy: rs.Policy, rule: str, clause: int = 0) -> set[str]:
-    """Return the pathways of a clause: for each the short names of its signals in alphabetical order, e.g. ``"a b"``."""
+    """Return the pathways of a clause, each as the short names of its signals in alphabetical order, e.g. ``"a b"``."""
     return {
         " ".join(sorted(signal.name.split(":", 1)[1] for signal in pathway))
         for pathway in policy.clauses(rule)[clause].pathways

@@ -25,7 +25,7 @@ def everything() -> rs.Module:
     writer(m, "general", i, out)
     resigner(m, "shy", i, out, weight=9.0)
     writer(m, "smile", y & j.detached(), face)
-    writer(m, "gated", j & mood.holds(lambda value: value == "gay"), face)
+    writer(m, "gated", j & mood.holds(lambda value: value == "merry"), face)
     hearer(m, "old", i.min_age(2.0) & x & j.max_age(7.0), i, [])
     hearer(m, "meet", people.added | people.removed & j, people.added, [])
     hearer(m, "look", pose.changed & j, pose.changed, [])
@@ -57,7 +57,7 @@ def tell(sim: Any, seed: int = 7, steps: int = 40) -> None:
             case 2 | 3:
                 sim.emit(signals["m:j"])
             case 4:
-                sim.put(slots["m:mood"], dice.choice(["calm", "gay"]))
+                sim.put(slots["m:mood"], dice.choice(["calm", "merry"]))
             case 5:
                 sim.put(slots["m:people"], {name: 1 for name in "abc" if dice.random() < 0.5})
             case _:

@@ -46,7 +46,7 @@ def test_an_occurrence_that_was_handled_is_gone(play: Any) -> None:
         assert at_rest(sim)
 
 
-def test_an_occurrence_without_a_listener_is_gone_at_once(play: Any) -> None:
+def test_an_occurrence_without_a_listener_is_immediately_gone(play: Any) -> None:
     m = rs.Module("m")
     ping = m.signal("ping")
     with play(m) as sim:

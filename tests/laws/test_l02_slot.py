@@ -1,4 +1,4 @@
-"""L2: slots are named, typed, long-lived variables, each with signals of its own."""
+"""L2: slots are named, typed, long-lived variables, each with its own signals."""
 
 from typing import Any
 
@@ -11,7 +11,7 @@ from ravestate.testing import simulate
 
 
 def heard_of(m: rs.Module, slot: rs.Slot[Any]) -> list[tuple[str, Any]]:
-    """Declare a rule for each signal of a slot, and return the list in which these rules note the signal's name and payload."""
+    """Declare a rule for each signal of a slot. Return the list to which each rule adds the signal and its payload."""
     heard: list[tuple[str, Any]] = []
     for signal in slot.signals:
         what = signal.name.rsplit(":", 1)[1]
@@ -41,9 +41,9 @@ def test_a_value_slot_signals_changed(play: Any) -> None:
     heard = heard_of(m, mood)
     with play(m) as sim:
         assert sim.read(mood) == "calm"
-        sim.put(mood, "gay")
-        assert heard == [("changed", "gay")]
-        assert sim.read(mood) == "gay"
+        sim.put(mood, "merry")
+        assert heard == [("changed", "merry")]
+        assert sim.read(mood) == "merry"
 
 
 def test_a_flag_signals_changed_and_its_new_value(play: Any) -> None:
@@ -150,7 +150,7 @@ def test_writing_an_equal_item_merges_no_groups(how: str) -> None:
         assert sim.fired.count("m:know") == 1
 
 
-def test_a_slot_may_be_declared_to_signal_every_write(play: Any) -> None:
+def test_a_slot_with_always_signals_even_an_equal_value(play: Any) -> None:
     m = rs.Module("m")
     said = m.slot("said", "", always=True)
     heard = heard_of(m, said)
@@ -164,9 +164,9 @@ def test_a_value_outlives_its_signals(play: Any) -> None:
     m = rs.Module("m")
     mood = m.slot("mood", "calm")
     with play(m) as sim:
-        sim.put(mood, "gay")
+        sim.put(mood, "merry")
         sim.advance(1_000.0)
-        assert sim.read(mood) == "gay"
+        assert sim.read(mood) == "merry"
 
 
 def test_each_context_has_its_own_copy_of_a_default(play: Any) -> None:

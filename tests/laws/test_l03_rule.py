@@ -1,4 +1,4 @@
-"""L3: a rule is an annotated function; it touches nothing that it did not declare."""
+"""L3: a rule is an annotated function. It can use only what it has declared."""
 
 import inspect
 from typing import Any
@@ -46,7 +46,7 @@ def test_a_condition_is_a_boolean_combination(play: Any) -> None:
 
 
 def refused(m: rs.Module, go: rs.Signal[Any]) -> tuple[Simulation, str]:
-    """Return the error of the rule `m:meddle` when it oversteps; that is an Error of the run (L18)."""
+    """Return the simulation, and the error with which a forbidden access ends the run of `m:meddle` (L18: Error)."""
     errors: list[rs.RuleFailure] = []
     hearer(m, "hear_error", rs.error, rs.error, errors)
     with simulate(m) as sim:
@@ -56,7 +56,7 @@ def refused(m: rs.Module, go: rs.Signal[Any]) -> tuple[Simulation, str]:
     assert isinstance(exception, rs.UndeclaredError)
     assert [(failure.rule, failure.exception) for failure in errors] == [(rule, exception)]
     assert "m:meddle" in str(exception)
-    assert f"{inspect.getsourcefile(refused)}:" in str(exception)  # the place of its declaration
+    assert f"{inspect.getsourcefile(refused)}:" in str(exception)  # where the rule was declared
     return sim, str(exception)
 
 
@@ -149,7 +149,7 @@ def test_a_declared_access_is_allowed() -> None:
         assert (sim.read(face), heard) == ("calm", ["calm"])
 
 
-def test_rules_of_two_modules_may_have_the_same_name(play: Any) -> None:
+def test_rules_of_two_modules_can_have_the_same_name(play: Any) -> None:
     one, two = rs.Module("one"), rs.Module("two")
     go = one.signal("go")
     two.requires.append(one)

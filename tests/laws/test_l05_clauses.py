@@ -1,4 +1,4 @@
-"""L5: conditions in disjunctive normal form; one clause at a time; declaration order everywhere."""
+"""L5: conditions become clauses (disjunctive normal form). A rule fires by one clause at a time, in declared order."""
 
 from itertools import pairwise
 from typing import Any
@@ -48,12 +48,12 @@ def test_a_rule_fires_by_one_clause_at_a_time(play: Any) -> None:
     with play(m) as sim:
         sim.emit(begin)
         sim.advance(10.0)
-        assert written(sim, out) == ["a"]  # one cause for both: the first declared clause fires, once
+        assert written(sim, out) == ["a"]  # both clauses have one cause, so only the first one fires, and only once
         sim.emit(b, "x")
         assert written(sim, out) == ["a", "b"]
 
 
-def test_one_of_two_clauses_that_share_a_spike_fires(play: Any) -> None:
+def test_only_one_of_two_clauses_that_share_a_spike_fires(play: Any) -> None:
     m = rs.Module("m")
     begin, a, b, c = m.signal("begin"), m.signal("a"), m.signal("b"), m.signal("c")
     heard: list[Any] = []

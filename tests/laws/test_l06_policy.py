@@ -1,4 +1,4 @@
-"""L6: modules compile into one immutable policy; every fault at once; one policy serves any number of contexts."""
+"""L6: modules compile into an immutable policy, which serves any number of contexts. All faults come together."""
 
 from collections.abc import Callable
 from typing import Any
@@ -126,7 +126,7 @@ def test_a_fault_is_reported_at_compile_time(fault: Fault) -> None:
     assert any(all(word in str(one) for word in words) for one in caught.value.exceptions), str(caught.value)
 
 
-def test_all_faults_are_reported_at_once() -> None:
+def test_all_faults_are_reported_together() -> None:
     cases = [fault() for fault in FAULTS]
     with pytest.raises(rs.DeclarationErrors) as caught:
         rs.compile(*(module for modules, _ in cases for module in modules))

@@ -4,7 +4,7 @@ import ravestate as rs
 from laws.short import emitter, hearer, pathways, writer
 
 
-def test_a_rule_may_cause_the_signals_that_it_emits() -> None:
+def test_the_signals_that_a_rule_emits_are_its_effects() -> None:
     m = rs.Module("m")
     go, x, y = m.signal("go"), m.signal("x"), m.signal("y")
     emitter(m, "cause", go, x, y)
@@ -15,7 +15,7 @@ def test_a_rule_may_cause_the_signals_that_it_emits() -> None:
     assert pathways(policy, "m:hear_y") == {"go y"}
 
 
-def test_a_rule_may_cause_every_signal_of_a_slot_that_it_writes() -> None:
+def test_all_signals_of_a_slot_that_a_rule_writes_are_its_effects() -> None:
     m = rs.Module("m")
     go = m.signal("go")
     slots = (m.slot("mood", ""), m.flag("lit"), m.collection("people"))

@@ -1,4 +1,4 @@
-"""L8: the causal pathway of a clause: the clause and, recursively, the causes of its non-detached constraints."""
+"""L8: a causal pathway is a clause plus, recursively, the causes of its non-detached constraints."""
 
 import ravestate as rs
 from laws.short import emitter, hearer, pathways, writer
@@ -61,7 +61,7 @@ def test_a_signal_with_several_causes_gives_several_pathways() -> None:
     assert pathways(policy, "m:both") == {"i x y", "j x y", "i j x y"}
 
 
-def test_each_clause_has_pathways_of_its_own() -> None:
+def test_each_clause_has_its_own_pathways() -> None:
     m = rs.Module("m")
     i, x, y = m.signal("i"), m.signal("x"), m.signal("y")
     emitter(m, "one", i, x)

@@ -1,4 +1,7 @@
-"""L9: the self-information of the least pathway, times weight, times recovery. (The worked example: tests/policy.)"""
+"""L9: utility is the self-information of the least pathway, times weight, times recovery.
+
+`tests/policy/test_pathways.py` has the worked example.
+"""
 
 from math import log
 from typing import Any
@@ -55,7 +58,7 @@ def test_a_rule_counts_once_however_many_of_its_pathways_share_the_signal() -> N
     hearer(m, "hear", x & i | x & j | x, x, [])
     hearer(m, "other", m.signal("z"), x, [])
     policy = rs.compile(m)
-    # x is on five pathways, but all of `hear`; i and j are each on those of `hear` and one more rule
+    # all five pathways with x belong to `hear`; i is on pathways of `hear` and `one`, and j on some of `hear` and `two`
     assert policy.clauses("m:hear")[2].utility == pytest.approx(log(4 / 1) + log(4 / 2))
 
 
@@ -67,7 +70,7 @@ def test_the_utility_of_a_clause_is_the_least_among_its_pathways() -> None:
     hearer(m, "three", common, common, [])
     hearer(m, "hear", x, x, [])
     policy = rs.compile(m)
-    # rare is on 2 of 4 rules, common on 3, x on 1
+    # rare is on the pathways of 2 of 4 rules, common of 3, x of 1
     assert policy.utility("m:hear") == pytest.approx(log(4) + log(4 / 3))
 
 
@@ -145,5 +148,5 @@ def test_a_weaker_rule_wins_while_the_stronger_one_recovers(play: Any) -> None:
         for _ in range(4):
             sim.emit(a)
             sim.advance(4.0)
-        # at 4 s strong counts 0.8, at 8 s 1.6, then it has just run again
+        # the weight of `strong` is 0.8 at 4 s and 1.6 at 8 s; at 12 s it is 0.8 again, because `strong` ran at 8 s
         assert moments(sim, out) == [(0.0, "strong"), (4.0, "weak"), (8.0, "strong"), (12.0, "weak")]

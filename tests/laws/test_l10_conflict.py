@@ -1,4 +1,4 @@
-"""L10: rules exclude each other for a cause iff they share a written slot and a causal group."""
+"""L10: rules exclude each other for a cause if, and only if, they share a written slot and a causal group."""
 
 from typing import Any
 
@@ -61,7 +61,7 @@ def test_rules_that_share_only_a_slot_do_not_exclude_each_other(play: Any) -> No
         assert written(sim, out) == ["one", "other"]
 
 
-def test_rules_that_may_exclude_each_other_run_together_for_different_causes(play: Any) -> None:
+def test_rules_that_exclude_each_other_for_one_cause_run_together_for_different_causes(play: Any) -> None:
     m = rs.Module("m")
     i, x, out = m.signal("i"), m.signal("x", input=True), output(m)
     emitter(m, "cause", i, x)
@@ -75,7 +75,7 @@ def test_rules_that_may_exclude_each_other_run_together_for_different_causes(pla
         assert written(sim, out) == ["specific", "specific"]
 
 
-def test_a_rule_that_only_looks_does_not_exclude_a_writer_of_its_slot(play: Any) -> None:
+def test_a_rule_with_only_a_detached_constraint_excludes_no_writer_of_its_slot(play: Any) -> None:
     m = rs.Module("m")
     i, out = m.signal("i"), output(m)
     writer(m, "act", i, out)

@@ -1,4 +1,4 @@
-"""L11: a spike is an occurrence with a payload, a time of birth and parents; its causal group is that of its parents."""
+"""L11: a spike is an occurrence with payload, time of birth and parents. It belongs to its parents' causal group."""
 
 from typing import Any
 
@@ -65,7 +65,8 @@ def test_the_groups_of_several_parents_merge(play: Any) -> None:
         assert set(births(sim, x)[0].parents) == {births(sim, i)[0].spike, births(sim, j)[0].spike}
         assert len(set(groups(sim, i, j, x))) == 1
         sim.advance(10.0)
-        assert written(sim, out) == ["act"]  # a rule that x started has written the slot, so no rule may write it for j
+        # i, j and x are one group. In this group, `act` has written the slot, so `late` may not write it.
+        assert written(sim, out) == ["act"]
 
 
 def test_a_spike_that_is_emitted_detached_begins_a_group(play: Any) -> None:

@@ -1,5 +1,7 @@
-"""L12: an activation is a clause and the spikes that it has acquired. One activation always stands by; several may hold
-the same spike; the spikes of an activation cohere."""
+"""L12: an activation is a clause and the spikes that it has acquired.
+
+One activation of each rule always stands by. Several can hold the same spike. The spikes of an activation cohere.
+"""
 
 from typing import Any
 
@@ -22,7 +24,7 @@ def test_a_signal_that_arrives_while_the_rule_runs_starts_another_run(play: Any)
         assert moments(sim, out) == [(10.0, "slow"), (11.0, "slow"), (12.0, "slow")]
 
 
-def test_an_activation_that_still_gathers_leaves_room_for_another(play: Any) -> None:
+def test_while_one_activation_lacks_a_spike_the_next_signal_starts_another(play: Any) -> None:
     m = rs.Module("m")
     a, b, heard = m.signal("a", payload=int), m.signal("b", payload=int), list[Any]()
 
@@ -39,7 +41,7 @@ def test_an_activation_that_still_gathers_leaves_room_for_another(play: Any) -> 
         assert heard == [(1, 1), (2, 2), (3, 3)]
 
 
-def test_several_activations_may_hold_a_spike_but_only_one_gets_consent(play: Any) -> None:
+def test_several_activations_can_hold_a_spike_but_only_one_gets_consent(play: Any) -> None:
     m = rs.Module("m")
     a, b, c, out = m.signal("a"), m.signal("b"), m.signal("c"), output(m)
     writer(m, "with_b", a & b, out)
@@ -132,7 +134,7 @@ def test_an_utterance_is_answered_even_while_an_earlier_one_waits_for_its_second
         assert answered == [("who are you?", "who are you?"), ("where are you?", "where are you?")]
 
 
-def test_inputs_without_a_common_cause_may_join_from_two_groups(play: Any) -> None:
+def test_inputs_without_a_common_cause_can_join_from_two_groups(play: Any) -> None:
     m = rs.Module("m")
     point, speech, heard = m.signal("point"), m.signal("speech"), list[Any]()
     hearer(m, "fuse", point & speech, speech, heard)
@@ -157,7 +159,7 @@ def test_coherence_extends_over_a_chain_of_causes(play: Any) -> None:
         assert heard == ["xj"]
 
 
-def test_a_detached_constraint_need_not_cohere(play: Any) -> None:
+def test_a_detached_constraint_does_not_have_to_cohere(play: Any) -> None:
     m, text, _ = utterances()
     seen: list[Any] = []
 
@@ -223,10 +225,10 @@ def test_an_older_activation_takes_the_spikes_that_a_merge_brings_together(play:
         assert heard == ["first"]
 
 
-def test_an_activation_that_has_lost_a_spike_may_take_spikes_of_other_groups(play: Any) -> None:
+def test_an_activation_that_has_lost_a_spike_can_take_spikes_of_other_groups(play: Any) -> None:
     m = rs.Module("m")
     a, s, v, out = m.signal("a"), m.signal("s"), m.signal("v"), output(m)
-    emitter(m, "cause", a, s, only_if=lambda ctx: False)  # so that `a` and `s` cohere
+    emitter(m, "cause", a, s, only_if=lambda ctx: False)  # only declared so that `a` and `s` must cohere
     writer(m, "both", s.max_age(1.0) & a & v, out)
     with play(m) as sim:
         sim.emit(s)  # this begins one group

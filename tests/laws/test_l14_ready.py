@@ -1,5 +1,7 @@
-"""L14: an activation is ready when all its constraints hold spikes that are old enough; only an incomplete activation
-loses a spike to its age."""
+"""L14: an activation is ready when all its constraints hold spikes that are old enough.
+
+Only an incomplete activation loses a spike to its age.
+"""
 
 from typing import Any
 
@@ -46,7 +48,7 @@ def test_an_activation_whose_spike_is_too_young_is_incomplete(play: Any) -> None
         sim.advance(1.0)
         sim.emit(b)
         sim.advance(9.5)
-        # The activation that holds both spikes gives b up, and so does the one that b itself began.
+        # Two activations give b up: the one that holds both spikes, and the one that began with b.
         assert given_up(sim, "both") == [(6.0, "b", "age")] * 2
         assert written(sim, out) == []
         sim.emit(b)

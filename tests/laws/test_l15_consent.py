@@ -7,7 +7,7 @@ import ravestate as rs
 from laws.short import at_rest, emitter, moments, output, resigner, started, writer, written
 
 
-def test_without_a_rival_a_ready_rule_runs_at_once(play: Any) -> None:
+def test_without_a_rival_a_ready_rule_runs_immediately(play: Any) -> None:
     m = rs.Module("m")
     i, out = m.signal("i"), output(m)
     writer(m, "only", i, out)
@@ -53,7 +53,7 @@ def test_the_greater_effective_utility_goes_first(play: Any) -> None:
         assert written(sim, out) == ["specific"]
 
 
-def test_weight_may_reverse_the_order(play: Any) -> None:
+def test_a_weight_can_reverse_the_order(play: Any) -> None:
     m = rs.Module("m")
     i, j, out = m.signal("i"), m.signal("j"), output(m)
     writer(m, "other", m.signal("k"), output(m, "face"))

@@ -1,4 +1,4 @@
-"""L16: a rival stands while its missing spikes may still come, and no activation waits longer than that."""
+"""L16: a rival is viable while its missing spikes may still come. No activation waits longer than that."""
 
 import sys
 from typing import Any
@@ -40,7 +40,7 @@ def test_a_spike_still_too_young_keeps_a_rival_viable(play: Any) -> None:
         assert pressed(sim) == []
 
 
-def test_a_rule_waits_for_a_rival_that_ripens_in_another_group(play: Any) -> None:
+def test_a_rule_waits_for_a_rival_whose_spike_in_another_group_is_still_too_young(play: Any) -> None:
     m = rs.Module("m")
     i, j, out = m.signal("i"), m.signal("j"), output(m)
     writer(m, "specific", i.min_age(3.0) & j, out)
@@ -118,7 +118,7 @@ def chain(stops_at: int) -> tuple[rs.Module, rs.Signal[Any], rs.Slot[str]]:
 
 
 @pytest.mark.parametrize("stops_at", [0, 1, 2])
-def test_the_horizon_shrinks_at_the_very_moment_a_link_breaks(play: Any, stops_at: int) -> None:
+def test_the_horizon_shrinks_at_the_moment_at_which_a_link_of_the_chain_breaks(play: Any, stops_at: int) -> None:
     m, begin, out = chain(stops_at)
     with play(m) as sim:
         sim.emit(begin)
@@ -134,7 +134,7 @@ def test_the_horizon_extends_over_rules_that_are_still_viable(play: Any) -> None
         assert moments(sim, out) == [(30.0, "specific")]
 
 
-def test_a_rule_that_may_not_fire_any_more_is_not_in_the_horizon(play: Any) -> None:
+def test_the_effects_of_a_rule_that_can_no_longer_fire_are_not_in_the_horizon(play: Any) -> None:
     m = rs.Module("m")
     i, x, y, z, out = m.signal("i"), m.signal("x"), m.signal("y"), m.signal("z"), output(m)
     emitter(m, "one", i, x, after=2.0, only_if=is_never_true)
@@ -145,10 +145,10 @@ def test_a_rule_that_may_not_fire_any_more_is_not_in_the_horizon(play: Any) -> N
     with play(m) as sim:
         sim.emit(i)
         sim.advance(20.0)
-        assert moments(sim, out) == [(2.0, "general")]  # without x there is no z, whatever `two` still raises
+        assert moments(sim, out) == [(2.0, "general")]  # without x there is no z, even if `two` still raises y
 
 
-def test_a_rival_is_viable_as_long_as_one_rule_may_still_raise_its_signal(play: Any) -> None:
+def test_a_rival_is_viable_while_one_rule_can_still_raise_its_signal(play: Any) -> None:
     m = rs.Module("m")
     i, x, out = m.signal("i"), m.signal("x"), output(m)
     emitter(m, "fast", i, x, after=1.0, only_if=is_never_true)
@@ -161,7 +161,7 @@ def test_a_rival_is_viable_as_long_as_one_rule_may_still_raise_its_signal(play: 
         assert moments(sim, out) == [(5.0, "specific")]
 
 
-def test_a_rule_that_resigns_leaves_the_horizon_too(play: Any) -> None:
+def test_the_horizon_also_shrinks_when_a_rule_resigns(play: Any) -> None:
     m = rs.Module("m")
     i, x, out = m.signal("i"), m.signal("x"), output(m)
     resigner(m, "classify", i, after=2.0, emits=x)
@@ -173,7 +173,7 @@ def test_a_rule_that_resigns_leaves_the_horizon_too(play: Any) -> None:
         assert moments(sim, out) == [(2.0, "general")]
 
 
-def test_a_rule_that_fails_leaves_the_horizon_too(play: Any) -> None:
+def test_the_horizon_also_shrinks_when_a_rule_fails(play: Any) -> None:
     m = rs.Module("m")
     i, x, out = m.signal("i"), m.signal("x"), output(m)
 
@@ -263,7 +263,7 @@ def test_a_rival_loses_no_patience_without_pressure(play: Any) -> None:
         assert moments(sim, out) == [(4.0, "fused")]
 
 
-def test_a_rival_that_lost_patience_gives_its_spikes_up(play: Any) -> None:
+def test_a_rival_whose_patience_ran_out_gives_its_spikes_up(play: Any) -> None:
     m = rs.Module("m")
     point, speech, out = m.signal("point"), m.signal("speech"), output(m)
     writer(m, "fused", point & speech, out)
@@ -294,7 +294,7 @@ def test_the_patience_of_a_rule_does_not_start_over_when_a_second_rule_presses_i
 
 
 def foreign(after: float, **options: Any) -> tuple[rs.Module, rs.Signal[Any], rs.Signal[Any], rs.Slot[str]]:
-    """Declare a rival that lacks `x`, which only `make` raises, for another cause (`kick`)."""
+    """Declare a rival that lacks `x`. Only `make` raises `x`, and only for another cause (`kick`)."""
     m = rs.Module("m")
     i, kick, x, out = m.signal("i"), m.signal("kick"), m.signal("x"), output(m)
     emitter(m, "make", kick, x, after=after, **options)
@@ -328,7 +328,7 @@ def test_an_effect_of_another_group_in_time_makes_the_rival_ready(play: Any) -> 
         assert moments(sim, out) == [(0.5, "specific")]
 
 
-def test_no_rule_waits_longer_than_the_live_rule_of_another_group_lives(play: Any) -> None:
+def test_no_rule_waits_for_a_rule_of_another_group_that_has_ended(play: Any) -> None:
     m, i, kick, out = foreign(after=0.5, only_if=is_never_true)
     with play(m) as sim:
         sim.emit(kick)
@@ -347,11 +347,11 @@ def test_a_rule_that_holds_a_spike_is_live(play: Any) -> None:
         sim.emit(kick)
         sim.emit(i)
         sim.advance(20.0)
-        sim.emit(i)  # now it holds none
+        sim.emit(i)  # now `make` holds no spike
         assert moments(sim, out) == [(1.0, "general"), (20.0, "general")]
 
 
-def test_a_signal_that_only_a_detached_rule_raises_is_no_input(play: Any) -> None:
+def test_a_signal_that_only_a_detached_rule_raises_is_not_an_input(play: Any) -> None:
     m = rs.Module("m")
     i, kick, x, out = m.signal("i"), m.signal("kick"), m.signal("x"), output(m)
     emitter(m, "make", kick, x, detached=True)
@@ -362,7 +362,7 @@ def test_a_signal_that_only_a_detached_rule_raises_is_no_input(play: Any) -> Non
         assert moments(sim, out) == [(0.0, "general")]
 
 
-def test_a_rule_waits_for_a_declared_input_though_another_raises_it(play: Any) -> None:
+def test_a_rule_waits_for_a_declared_input_even_if_another_rule_raises_it(play: Any) -> None:
     m = rs.Module("m")
     i, kick, x, out = m.signal("i"), m.signal("kick"), m.signal("x", input=True), output(m)
     emitter(m, "make", kick, x)
@@ -410,7 +410,7 @@ def test_a_rival_is_pressed_from_the_moment_at_which_it_lost_a_spike(play: Any) 
 
 
 def mixed(after: float, **options: Any) -> tuple[rs.Module, rs.Signal[Any], rs.Signal[Any], rs.Slot[str]]:
-    """Declare a rival that lacks `x`, which may come in the group, and `j`, an input."""
+    """Declare a rival that lacks `x` and `j`. A rule of the group may still raise `x`, and `j` is an input."""
     m = rs.Module("m")
     i, j, x, out = m.signal("i"), m.signal("j"), m.signal("x"), output(m)
     emitter(m, "classify", i, x, after=after, **options)
@@ -482,7 +482,7 @@ def test_a_rival_whose_slot_is_consumed_is_not_viable(play: Any) -> None:
 def test_no_rule_waits_for_a_rival_whose_gate_is_closed(play: Any) -> None:
     m = rs.Module("m")
     i, mood, out = m.signal("i"), m.slot("mood", "calm"), output(m)
-    writer(m, "gated", i & mood.holds(lambda value: value == "gay"), out)
+    writer(m, "gated", i & mood.holds(lambda value: value == "merry"), out)
     writer(m, "general", i, out)
     with play(m) as sim:
         sim.emit(i)
@@ -511,7 +511,7 @@ def test_pressure_for_one_cause_does_not_use_up_the_patience_for_another(play: A
     with play(m) as sim:
         sim.emit(speech)
         sim.advance(0.6)
-        sim.emit(speech)  # has a patience of its own
+        sim.emit(speech)  # this cause has its own patience
         sim.advance(0.7)
         assert moments(sim, out) == [(1.0, "plain")]
         sim.emit(point)
@@ -565,7 +565,7 @@ def test_a_younger_activation_is_not_under_pressure_while_an_older_one_of_its_ru
         assert started(sim)[-1] == (1.4, "fuse")  # the speech that it needs was still live
 
 
-def test_a_chain_of_causes_may_be_longer_than_the_recursion_limit(play: Any, monkeypatch: pytest.MonkeyPatch) -> None:
+def test_a_chain_of_causes_can_be_longer_than_the_recursion_limit(play: Any, monkeypatch: pytest.MonkeyPatch) -> None:
     def refuse(limit: int) -> None:
         raise AssertionError(f"the engine must not change the recursion limit: {limit}")
 

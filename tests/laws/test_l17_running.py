@@ -67,7 +67,7 @@ def test_rules_that_exclude_each_other_never_run_together(play: Any) -> None:
         assert sim.failures == []
 
 
-def test_a_plain_function_runs_as_well() -> None:
+def test_a_function_without_async_runs_too() -> None:
     m = rs.Module("m")
     i, out = m.signal("i"), output(m)
 

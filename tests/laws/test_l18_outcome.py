@@ -1,4 +1,4 @@
-"""L18: the outcomes of a run, and their effect on slots and spikes: done, resign, error, retire."""
+"""L18: a run ends as Done, Resign, Error or Retire. Each outcome has effects on slots and spikes."""
 
 import logging
 from typing import Any
@@ -100,7 +100,7 @@ def test_a_rule_that_resigned_gives_up_these_spikes(play: Any) -> None:
         sim.emit(i)
         sim.emit(j)
         assert outcomes(sim) == [("shy", "resigned")]
-        sim.emit(i)  # it had given up that j as well
+        sim.emit(i)  # the rule had also given up the earlier j
         assert outcomes(sim) == [("shy", "resigned")]
         sim.emit(j)
         assert outcomes(sim) == [("shy", "resigned")] * 2
@@ -125,7 +125,7 @@ class Oops(Exception):
     pass
 
 
-def test_an_exception_is_signalled_and_the_next_best_answers(play: Any) -> None:
+def test_an_exception_raises_the_error_signal_and_the_next_best_rule_runs(play: Any) -> None:
     async def act(ctx: Any, out: Any) -> None:
         raise Oops("broken")
 

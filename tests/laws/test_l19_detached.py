@@ -1,4 +1,4 @@
-"""L19: a detached constraint only looks; a detached rule's effects have no parents; every other loop ends."""
+"""L19: a detached constraint only looks, and a detached rule's effects have no parents. Every other loop ends."""
 
 from typing import Any
 
@@ -39,7 +39,7 @@ def test_a_detached_constraint_joins_no_groups(play: Any) -> None:
         assert groups["m:x"] == groups["m:i"] != groups["m:j"]
 
 
-def test_a_detached_constraint_may_look_at_one_spike_more_than_once(play: Any) -> None:
+def test_a_detached_constraint_can_look_at_one_spike_more_than_once(play: Any) -> None:
     m = rs.Module("m")
     i, j, heard = m.signal("i"), m.signal("j"), list[Any]()
     hearer(m, "look", i & j.detached(), i, heard)
@@ -53,7 +53,7 @@ def test_a_detached_constraint_may_look_at_one_spike_more_than_once(play: Any) -
         assert heard == [0, 1, 2]  # too old to be looked at
 
 
-def test_a_detached_constraint_may_look_at_a_consumed_spike(play: Any) -> None:
+def test_a_detached_constraint_can_look_at_a_consumed_spike(play: Any) -> None:
     m = rs.Module("m")
     i, j, out = m.signal("i"), m.signal("j"), output(m)
     writer(m, "answer", j, out)
@@ -65,7 +65,7 @@ def test_a_detached_constraint_may_look_at_a_consumed_spike(play: Any) -> None:
         assert moments(sim, out) == [(0.0, "answer"), (1.0, "look")]
 
 
-def test_a_rule_that_only_looks_runs_once_on_each_spike(play: Any) -> None:
+def test_a_rule_with_only_a_detached_constraint_runs_once_on_each_spike(play: Any) -> None:
     m = rs.Module("m")
     i, heard = m.signal("i"), list[Any]()
     hearer(m, "look", i.detached(), i, heard)
@@ -92,7 +92,7 @@ def test_effects_of_a_detached_rule_have_no_parents(play: Any) -> None:
         assert births(sim, i)[0].group not in {born.group for born in effects}
 
 
-def test_a_detached_rule_consumes_like_any_other(play: Any) -> None:
+def test_a_detached_rule_consumes_spikes_like_any_other_rule(play: Any) -> None:
     m = rs.Module("m")
     i, out = m.signal("i"), output(m)
     writer(m, "first", i, out, detached=True)
@@ -103,7 +103,7 @@ def test_a_detached_rule_consumes_like_any_other(play: Any) -> None:
         assert written(sim, out) == ["first"]
 
 
-def test_a_loop_through_a_detached_rule_may_run_for_ever(play: Any) -> None:
+def test_a_loop_through_a_detached_rule_can_run_for_ever(play: Any) -> None:
     m = rs.Module("m")
     tick, out = m.signal("tick", input=True), output(m)
 

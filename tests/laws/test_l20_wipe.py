@@ -1,4 +1,4 @@
-"""L20: wiping a signal withdraws its live spikes and all their descendants; `keep="latest"`."""
+"""L20: wiping a signal withdraws its live spikes and their descendants. `keep="latest"` withdraws older spikes."""
 
 from typing import Any
 
@@ -39,7 +39,7 @@ def test_descendants_of_a_wiped_spike_are_withdrawn(play: Any) -> None:
         assert all(len(drops(sim, signal)) == 1 for signal in (i, x, y))
 
 
-def test_spikes_of_other_causes_stay(play: Any) -> None:
+def test_wiping_a_signal_leaves_spikes_of_other_causes(play: Any) -> None:
     m = rs.Module("m")
     i, x, never = m.signal("i"), m.signal("x", input=True), m.signal("never")
     emitter(m, "one", i, x)
@@ -102,7 +102,7 @@ def test_a_descendant_is_withdrawn_even_if_no_activation_holds_the_wiped_cause(p
         assert written(sim, out) == []
 
 
-def test_if_a_cancelled_rule_has_written_nothing_another_rule_may_answer_the_same_input(play: Any) -> None:
+def test_if_a_cancelled_rule_has_written_nothing_another_rule_can_answer_the_same_input(play: Any) -> None:
     m = rs.Module("m")
     i, x, out, ends = m.signal("i"), m.signal("x"), output(m), list[str]()
     emitter(m, "cause", i, x)
@@ -115,7 +115,7 @@ def test_if_a_cancelled_rule_has_written_nothing_another_rule_may_answer_the_sam
         assert (ends, written(sim, out)) == (["2"], ["otherwise"])
 
 
-def test_a_rule_that_runs_for_another_cause_goes_on(play: Any) -> None:
+def test_a_rule_that_runs_for_another_cause_continues(play: Any) -> None:
     m = rs.Module("m")
     i, j, out, ends = m.signal("i"), m.signal("j"), output(m), list[str]()
     interrupted(m, i, out, ends)
@@ -141,7 +141,7 @@ def test_a_plain_function_cannot_be_interrupted() -> None:
         assert (written(sim, out), sim.fired) == (["plain"], ["m:act"])
 
 
-def test_a_rule_may_wipe(play: Any) -> None:
+def test_a_rule_can_wipe_a_signal(play: Any) -> None:
     m = rs.Module("m")
     a, b, forget, out = m.signal("a"), m.signal("b"), m.signal("forget"), output(m)
     writer(m, "both", a & b, out)
@@ -173,7 +173,7 @@ def test_a_rule_that_wipes_its_own_spike_is_not_cancelled(play: Any) -> None:
         assert (written(sim, out), sim.failures) == (["wiped"], [])
 
 
-def test_a_slot_may_keep_only_its_latest_change(play: Any) -> None:
+def test_a_slot_can_keep_only_its_latest_change(play: Any) -> None:
     m = rs.Module("m")
     pose, go, heard = m.slot("pose", 0, keep="latest", input=True), m.signal("go"), list[Any]()
     hearer(m, "look", pose.changed & go, pose.changed, heard)
@@ -186,7 +186,7 @@ def test_a_slot_may_keep_only_its_latest_change(play: Any) -> None:
         assert heard == [3]
 
 
-def test_a_signal_may_keep_only_its_latest_spike(play: Any) -> None:
+def test_a_signal_can_keep_only_its_latest_spike(play: Any) -> None:
     m = rs.Module("m")
     pose, go, heard = m.signal("pose", payload=int, keep="latest"), m.signal("go"), list[Any]()
     hearer(m, "look", pose & go, pose, heard)

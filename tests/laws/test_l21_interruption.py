@@ -13,7 +13,7 @@ from laws.short import hearer, moments, outcomes, output, started, writer, writt
 def talker(
     until: Callable[[rs.Signal[Any], rs.Signal[Any], rs.Slot[str]], rs.Condition], **options: Any
 ) -> tuple[rs.Module, rs.Signal[Any], rs.Signal[Any], rs.Signal[Any], rs.Slot[str], rs.Slot[str]]:
-    """Declare a rule that says one word a second, for ten seconds; `until` combines two signals and a slot."""
+    """Declare a rule that says one word per second for ten seconds. `until` combines two signals and a slot."""
     m = rs.Module("m")
     i, stop, hush = m.signal("i"), m.signal("stop", payload=object), m.signal("hush")
     mood, out = m.slot("mood", "patient"), output(m)
@@ -27,7 +27,7 @@ def talker(
     return m, i, stop, hush, mood, out
 
 
-def test_a_run_is_ended_at_that_very_moment(play: Any) -> None:
+def test_a_run_ends_at_the_moment_at_which_its_condition_is_met(play: Any) -> None:
     m, i, stop, _, _, out = talker(lambda stop, hush, mood: stop)
     with play(m) as sim:
         sim.emit(i)
@@ -67,7 +67,7 @@ def test_an_interrupted_run_is_done_even_if_it_had_written_nothing(play: Any) ->
         assert (written(sim, out), sim.fired) == ([], ["m:ponder"])
 
 
-def test_without_its_signal_a_run_goes_on(play: Any) -> None:
+def test_a_run_continues_if_its_condition_is_not_met(play: Any) -> None:
     m, i, _, hush, _, out = talker(lambda stop, hush, mood: stop)
     with play(m) as sim:
         sim.emit(i)
@@ -99,7 +99,7 @@ def test_a_rule_is_not_interrupted_by_the_spike_that_started_it(play: Any) -> No
     with play(m) as sim:
         sim.put(text, "one")
         sim.advance(2.0)
-        sim.put(text, "two")  # barge-in: the first answer ends, and the second input gets a full one
+        sim.put(text, "two")  # barge-in: the first answer ends, and the second input gets a full answer
         assert outcomes(sim) == [("answer", "interrupted")]
         sim.advance(10.0)
         assert started(sim) == [(0.0, "answer"), (2.0, "answer")]
@@ -133,7 +133,7 @@ def test_the_function_gets_the_chance_to_clean_up(play: Any) -> None:
 
 
 @pytest.mark.parametrize("payload", [False, True])
-def test_the_condition_may_have_predicates(play: Any, payload: bool) -> None:
+def test_the_condition_can_have_predicates(play: Any, payload: bool) -> None:
     m, i, stop, _, _, _ = talker(lambda stop, hush, mood: stop.where(bool))
     with play(m) as sim:
         sim.emit(i)
@@ -141,7 +141,7 @@ def test_the_condition_may_have_predicates(play: Any, payload: bool) -> None:
         assert outcomes(sim) == ([("talk", "interrupted")] if payload else [])
 
 
-def test_the_condition_may_be_a_conjunction(play: Any) -> None:
+def test_the_condition_can_be_a_conjunction(play: Any) -> None:
     m, i, stop, hush, _, _ = talker(lambda stop, hush, mood: stop & hush)
     with play(m) as sim:
         sim.emit(i)
@@ -152,7 +152,7 @@ def test_the_condition_may_be_a_conjunction(play: Any) -> None:
         assert outcomes(sim) == [("talk", "interrupted")]
 
 
-def test_the_condition_may_be_a_disjunction(play: Any) -> None:
+def test_the_condition_can_be_a_disjunction(play: Any) -> None:
     m, i, _, hush, _, _ = talker(lambda stop, hush, mood: stop | hush)
     with play(m) as sim:
         sim.emit(i)
@@ -160,7 +160,7 @@ def test_the_condition_may_be_a_disjunction(play: Any) -> None:
         assert outcomes(sim) == [("talk", "interrupted")]
 
 
-def test_the_condition_may_ask_for_age(play: Any) -> None:
+def test_the_condition_can_require_an_age(play: Any) -> None:
     m, i, stop, _, _, out = talker(lambda stop, hush, mood: stop.min_age(2.0))
     with play(m) as sim:
         sim.emit(i)
@@ -170,7 +170,7 @@ def test_the_condition_may_ask_for_age(play: Any) -> None:
         assert len(written(sim, out)) == 3  # at 0, 1 and 2 s; ended at 2.5 s
 
 
-def test_spikes_of_the_condition_grow_too_old(play: Any) -> None:
+def test_spikes_for_the_condition_grow_too_old(play: Any) -> None:
     m, i, stop, hush, _, out = talker(lambda stop, hush, mood: stop.max_age(1.0) & hush)
     with play(m) as sim:
         sim.emit(i)
@@ -181,7 +181,7 @@ def test_spikes_of_the_condition_grow_too_old(play: Any) -> None:
         assert len(written(sim, out)) == 10
 
 
-def test_the_condition_may_be_gated_by_a_slot(play: Any) -> None:
+def test_the_condition_can_have_a_predicate_on_a_slot(play: Any) -> None:
     m, i, stop, _, mood, _ = talker(lambda stop, hush, mood: stop & mood.holds(lambda value: value == "impatient"))
     with play(m) as sim:
         sim.emit(i)
@@ -192,7 +192,7 @@ def test_the_condition_may_be_gated_by_a_slot(play: Any) -> None:
         assert outcomes(sim) == [("talk", "interrupted")]
 
 
-def test_the_gate_of_a_condition_may_open_after_its_spike(play: Any) -> None:
+def test_the_predicate_on_a_slot_can_become_true_after_the_spike(play: Any) -> None:
     m, i, stop, _, mood, _ = talker(lambda stop, hush, mood: stop & mood.holds(lambda value: value == "impatient"))
     with play(m) as sim:
         sim.emit(i)
@@ -212,7 +212,7 @@ def test_an_interruption_does_not_consume_its_spike(play: Any) -> None:
         assert written(sim, out) == ["word 0", "react"]
 
 
-def test_every_run_that_watches_is_ended(play: Any) -> None:
+def test_the_condition_ends_every_run_that_watches_for_it(play: Any) -> None:
     m, i, stop, _, _, _ = talker(lambda stop, hush, mood: stop)
     with play(m) as sim:
         for _ in range(3):

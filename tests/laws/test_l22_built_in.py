@@ -1,4 +1,4 @@
-"""L22: startup, shutdown, error; and the flags activity and pressure."""
+"""L22: the built-in signals startup, shutdown and error, and the built-in flags activity and pressure."""
 
 from typing import Any
 
@@ -41,7 +41,7 @@ def test_error_carries_the_rule_and_the_exception(play: Any) -> None:
         assert errors == [rs.RuleFailure("m:fail", oops)]
 
 
-def test_the_built_in_names() -> None:
+def test_core_has_no_rules_but_the_documented_signals_and_flags() -> None:
     policy = rs.compile()
     assert list(policy.rules) == []
     assert set(policy.slots) == {"core:activity", "core:pressure"}
@@ -116,7 +116,7 @@ def test_an_activation_that_only_lacks_spikes_does_not_raise_pressure(play: Any)
         assert moments(sim, rs.pressure) == []
 
 
-def test_bored_can_be_made_of_activity(play: Any) -> None:
+def test_a_bored_signal_can_be_built_from_activity(play: Any) -> None:
     m = rs.Module("m")
     i, bored, heard = m.signal("i"), m.signal("bored"), list[float]()
     hearer(m, "hear", i, i, [])
@@ -137,7 +137,7 @@ def test_bored_can_be_made_of_activity(play: Any) -> None:
         assert heard[0] == 9.0  # five seconds of silence after the last word
 
 
-def test_impatient_can_be_made_of_pressure(play: Any) -> None:
+def test_an_impatient_signal_can_be_built_from_pressure(play: Any) -> None:
     m = rs.Module("m")
     i, x, impatient, out, heard = (
         m.signal("i"),

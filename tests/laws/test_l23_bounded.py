@@ -1,5 +1,7 @@
-"""L23: every signal has an overflow policy; an engine at rest holds nothing; an endless loop does not keep other rules
-from running."""
+"""L23: every signal has an overflow policy, and an engine at rest holds nothing.
+
+An endless loop does not keep other rules from running.
+"""
 
 import asyncio
 import gc

@@ -1,4 +1,4 @@
-"""L24: a pure state machine: the same inputs and times give the same effects, byte for byte, in any process."""
+"""L24: the engine is a pure state machine. The same inputs and times give the same effects in any process."""
 
 import os
 import random
@@ -41,7 +41,7 @@ def told(driver: Driver, seed: int = 7) -> Driver:
     return driver
 
 
-def test_the_same_effects_under_any_order_of_hashes() -> None:
+def test_the_order_of_hashes_does_not_affect_the_effects() -> None:
     outputs: set[bytes] = set()
     for seed in ("0", "1", "42", "4294967295"):
         run = subprocess.run(
@@ -72,7 +72,7 @@ def test_the_same_simulation_gives_the_same_trace() -> None:
 
 
 def test_the_origin_of_time_does_not_matter() -> None:
-    """A later origin of time shifts all times by the same amount."""
+    """A later origin of time only shifts all times by the same amount."""
 
     def shape(driver: Driver) -> list[tuple[str, float]]:
         begin = driver.trace[0].time
@@ -126,7 +126,7 @@ class Fidgety(Driver):
     def _next(self) -> float:
         due = super()._next()
         if self.now < min(due, self.goal):
-            self.engine.advance((self.now + min(due, self.goal)) / 2)  # between deadlines, where nothing is due
+            self.engine.advance((self.now + min(due, self.goal)) / 2)  # between two deadlines, when nothing is due
             assert self.engine.effects() == []
         return due
 
@@ -157,7 +157,7 @@ def test_a_recorded_run_can_be_replayed(seed: int) -> None:
 
 
 def test_the_calls_up_to_a_moment_restore_the_state_of_that_moment() -> None:
-    """A new engine that gets the same calls has the same snapshot, as after a crash."""
+    """After a crash, a new engine that gets the same calls has the same snapshot."""
     policy = rs.compile(everything())
     pictures: list[tuple[int, dict[str, Any]]] = []
 

@@ -1,4 +1,4 @@
-"""L25: explanations of every rule at any moment: its spikes, its wait, and why it did not fire; and the trace."""
+"""L25: every rule can be explained at any moment, and a trace has every decision."""
 
 import json
 from typing import Any, get_args
@@ -15,7 +15,7 @@ from scenarios.driver import Driver
 
 
 def alive(sim: Any, rule: str) -> ActivationState:
-    """Return the explanation of the one live activation of a rule."""
+    """Return the explanation of a rule's only live activation."""
     [activation] = sim.explain(rule).activations
     return activation
 
@@ -97,7 +97,7 @@ def test_an_explanation_shows_a_spike_that_ripens_and_a_closed_gate(play: Any) -
     m = rs.Module("m")
     i, mood, out = m.signal("i"), m.slot("mood", "calm"), output(m)
     writer(m, "later", i.min_age(2.0), out)
-    writer(m, "gated", i & mood.holds(lambda value: value == "gay"), out)
+    writer(m, "gated", i & mood.holds(lambda value: value == "merry"), out)
     with play(m) as sim:
         sim.emit(i)
         later, gated = alive(sim, "m:later"), alive(sim, "m:gated")
@@ -107,7 +107,7 @@ def test_an_explanation_shows_a_spike_that_ripens_and_a_closed_gate(play: Any) -
         assert "may not run" in str(sim.explain("m:gated")) == repr(sim.explain("m:gated"))
 
 
-def test_condition_pathways_and_utility_are_listed(play: Any) -> None:
+def test_an_explanation_lists_condition_pathways_and_utility(play: Any) -> None:
     m, _, _ = fusion()
     with play(m) as sim:
         [clause] = sim.explain("m:fused").clauses
@@ -120,12 +120,12 @@ def test_condition_pathways_and_utility_are_listed(play: Any) -> None:
 
 
 def why(sim: Any, rule: str) -> str:
-    """Return the explanation of a rule that has not fired on the input of this story."""
+    """Return the history in the explanation of a rule that has not fired."""
     assert rule not in sim.fired
     return "\n".join(sim.explain(rule).history)
 
 
-def test_why_it_did_not_fire_another_rule_answered(play: Any) -> None:
+def test_explain_says_that_another_rule_answered(play: Any) -> None:
     m, point, speech = fusion()
     with play(m) as sim:
         sim.emit(point)
@@ -133,7 +133,7 @@ def test_why_it_did_not_fire_another_rule_answered(play: Any) -> None:
         assert "m:fused answered" in why(sim, "m:plain")
 
 
-def test_why_it_did_not_fire_its_patience_ran_out(play: Any) -> None:
+def test_explain_says_that_the_patience_ran_out(play: Any) -> None:
     m, _, speech = fusion()
     with play(m) as sim:
         sim.emit(speech)
@@ -144,7 +144,7 @@ def test_why_it_did_not_fire_its_patience_ran_out(play: Any) -> None:
         assert "patience" in reason
 
 
-def test_why_it_did_not_fire_the_spike_grew_too_old(play: Any) -> None:
+def test_explain_says_that_a_spike_grew_too_old(play: Any) -> None:
     m, point, _ = fusion()
     with play(m) as sim:
         sim.emit(point)
@@ -152,7 +152,7 @@ def test_why_it_did_not_fire_the_spike_grew_too_old(play: Any) -> None:
         assert "too old" in why(sim, "m:fused")
 
 
-def test_why_it_did_not_fire_it_resigned(play: Any) -> None:
+def test_explain_says_that_the_rule_resigned(play: Any) -> None:
     m = rs.Module("m")
     i = m.signal("i")
     resigner(m, "shy", i, output(m))
@@ -161,7 +161,7 @@ def test_why_it_did_not_fire_it_resigned(play: Any) -> None:
         assert "resigned: not this time" in why(sim, "m:shy")
 
 
-def test_why_it_did_not_fire_it_failed(play: Any) -> None:
+def test_explain_says_that_the_rule_failed(play: Any) -> None:
     m = rs.Module("m")
     i, out = m.signal("i"), output(m)
 
@@ -174,7 +174,7 @@ def test_why_it_did_not_fire_it_failed(play: Any) -> None:
         assert "broken" in why(sim, "m:fail")
 
 
-def test_why_it_did_not_fire_the_spike_was_withdrawn(play: Any) -> None:
+def test_explain_says_that_a_spike_was_withdrawn(play: Any) -> None:
     m, point, _ = fusion()
     with play(m) as sim:
         sim.emit(point)
@@ -182,7 +182,7 @@ def test_why_it_did_not_fire_the_spike_was_withdrawn(play: Any) -> None:
         assert "withdrawn" in why(sim, "m:fused")
 
 
-def test_why_it_did_not_fire_the_payload_did_not_fit(play: Any) -> None:
+def test_explain_says_that_the_payload_did_not_fit(play: Any) -> None:
     m = rs.Module("m")
     i = m.signal("i", payload=int)
     writer(m, "picky", i.where(lambda number: number > 10), output(m))
@@ -191,7 +191,7 @@ def test_why_it_did_not_fire_the_payload_did_not_fit(play: Any) -> None:
         assert "m:i" in why(sim, "m:picky")
 
 
-def test_why_it_did_not_fire_its_cause_was_answered_before(play: Any) -> None:
+def test_explain_says_that_the_cause_was_already_answered(play: Any) -> None:
     m = rs.Module("m")
     i, x, out = m.signal("i"), m.signal("x"), output(m)
     writer(m, "other", m.signal("k"), output(m, "face"))
@@ -204,7 +204,7 @@ def test_why_it_did_not_fire_its_cause_was_answered_before(play: Any) -> None:
         assert "answered its cause" in why(sim, "m:late")
 
 
-def test_why_it_did_not_fire_nothing_it_waits_for_has_occurred(play: Any) -> None:
+def test_explain_names_the_signal_that_has_not_occurred(play: Any) -> None:
     m, point, _ = fusion()
     with play(m) as sim:
         sim.emit(point)
@@ -212,7 +212,7 @@ def test_why_it_did_not_fire_nothing_it_waits_for_has_occurred(play: Any) -> Non
         assert "m:speech" in why(sim, "m:fused")
 
 
-def test_why_it_did_not_fire_it_has_retired(play: Any) -> None:
+def test_explain_says_that_the_rule_has_retired(play: Any) -> None:
     m = rs.Module("m")
     i, out = m.signal("i"), output(m)
 
@@ -227,7 +227,7 @@ def test_why_it_did_not_fire_it_has_retired(play: Any) -> None:
         assert "retired" in str(explanation)
 
 
-def test_an_unknown_rule_is_refused_with_the_nearest_name(play: Any) -> None:
+def test_the_error_about_an_unknown_rule_suggests_the_nearest_name(play: Any) -> None:
     m, _, _ = fusion()
     with play(m) as sim, pytest.raises(rs.DeclarationError, match="did you mean 'm:fused'"):
         sim.explain("m:fussed")
@@ -261,8 +261,10 @@ def test_births_holdings_and_outcomes_are_traced_with_their_causes(play: Any) ->
 
 
 def test_the_reason_to_wait_is_traced_again_when_it_changes(play: Any) -> None:
-    """The patience of `better` ends at 1 s, that of `best` at 2 s. `second` and `third` always wait for the rivals of
-    `first`."""
+    """The patience of `better` ends at 1 s, and that of `best` at 2 s.
+
+    `second` and `third` always also wait for the rivals of `first`.
+    """
     m = rs.Module("m")
     speech, topic, x, y = (m.signal(name) for name in ("speech", "topic", "x", "y"))
     out = output(m)
@@ -283,7 +285,7 @@ def test_the_reason_to_wait_is_traced_again_when_it_changes(play: Any) -> None:
             assert told[name][:2] == [(0.0, {"m:best", "m:better", "m:first"}), (1.0, {"m:best", "m:first"})]
 
 
-def test_a_wait_that_is_asked_about_again_for_the_same_reason_is_traced_once(play: Any) -> None:
+def test_a_wait_with_the_same_reason_is_traced_only_once(play: Any) -> None:
     m = rs.Module("m")
     go, out = m.signal("go"), output(m)
     writer(m, "first", go, out, after=3.0, weight=2.0)
@@ -331,7 +333,7 @@ def test_without_a_listener_no_record_is_made(monkeypatch: pytest.MonkeyPatch) -
         assert len(sim.fired) > 50
 
 
-def test_tracing_changes_nothing() -> None:
+def test_tracing_does_not_change_the_effects() -> None:
     policy = rs.compile(everything())
     ends: list[tuple[list[str], dict[str, Any]]] = []
     for traced in (False, True):

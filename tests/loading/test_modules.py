@@ -1,4 +1,4 @@
-"""Loading a module by its file. `tests/cli/test_agent.py` has the other ways, and every mistake."""
+"""A module can be loaded by its file. `tests/cli/test_agent.py` tests the other ways, and every mistake."""
 
 import importlib
 from pathlib import Path

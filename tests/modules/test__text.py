@@ -1,4 +1,4 @@
-"""Text without control characters."""
+"""Cleaning removes control characters from text."""
 
 from hypothesis import given
 from hypothesis import strategies as st
@@ -6,15 +6,15 @@ from hypothesis import strategies as st
 from ravestate.modules._text import printable, without_controls
 
 
-def test_escape_sequences_are_removed_as_a_whole() -> None:
+def test_escape_sequences_are_removed_completely() -> None:
     assert printable("a\x1b[1;31mb\x1b]0;title\x07c\x1b(Bd\x9b2Je\x1b") == "abcde"
 
 
-def test_every_line_end_is_a_line_feed() -> None:
+def test_every_line_end_becomes_a_line_feed() -> None:
     assert printable("a\r\nb\rc\n\td") == "a\nb\nc\n\td"
 
 
-def test_broken_bytes_become_visible() -> None:
+def test_invalid_bytes_become_visible() -> None:
     assert without_controls(b"caf\xe9".decode("utf-8", "surrogateescape")) == "caf\ufffd"
 
 
@@ -27,5 +27,5 @@ def test_the_result_can_be_printed(text: str) -> None:
 
 
 @given(st.lists(st.text(st.characters(codec=None, categories=None), max_size=10)))
-def test_cleaning_piece_by_piece_equals_cleaning_the_whole(pieces: list[str]) -> None:
+def test_cleaning_a_text_piece_by_piece_gives_the_same_result(pieces: list[str]) -> None:
     assert "".join(map(without_controls, pieces)) == without_controls("".join(pieces))

@@ -1,4 +1,4 @@
-"""YAML nodes: clear errors with file and line."""
+"""YAML nodes know their kind and line, so that errors can name the file and the line."""
 
 from pathlib import Path
 
@@ -8,7 +8,7 @@ from ravestate.errors import DeclarationError, PlatformError
 from ravestate.modules._yaml import fault, kind_of, read_nodes
 
 
-def test_nodes_know_their_kind_and_line(tmp_path: Path) -> None:
+def test_a_node_has_its_kind_and_its_line(tmp_path: Path) -> None:
     file = tmp_path / "a.yaml"
     file.write_text("a: 1\nb: [2]")
     root = read_nodes(file, "file of tests")
@@ -37,7 +37,7 @@ def test_a_file_that_is_not_yaml_is_refused_with_the_line(tmp_path: Path, conten
         read_nodes(tmp_path / "a.yaml", "file of tests")
 
 
-def test_a_file_that_cannot_be_read_is_named(tmp_path: Path) -> None:
+def test_the_error_names_a_file_that_cannot_be_read(tmp_path: Path) -> None:
     (tmp_path / "a.yaml").touch()
     with pytest.raises(PlatformError, match=r"the file of tests .*/b\.yaml' does not exist; did you mean 'a\.yaml'"):
         read_nodes(tmp_path / "b.yaml", "file of tests")

@@ -1,4 +1,4 @@
-"""The static graph of causes (L7): closures over the effects of rules."""
+"""The static graph of causes (L7): which rules can cause a signal, directly or through other rules."""
 
 import ravestate as rs
 from ravestate.policy.causes import Causes
@@ -23,7 +23,10 @@ def signals(policy: Policy, *which: str) -> list[int]:
 
 
 def chain() -> tuple[Policy, Causes]:
-    """entry -> first -> x -> second -> y (detached) -> third -> out; and `aside` looks at x, detached."""
+    """Return a policy: entry -> first -> x -> second (detached) -> y -> third -> out.
+
+    The rule `aside` has a detached constraint on x: x (detached) -> aside -> z -> fourth -> out.
+    """
     m = rs.Module("m")
     entry, x, y, z = (m.signal(name) for name in ("entry", "x", "y", "z"))
     out = m.slot("out")
@@ -69,7 +72,7 @@ def test_wide_ancestors_stop_at_inputs() -> None:
     assert names(policy, policy.causes.wide_ancestors(policy.signal_of["m:y"].index)) == ["second"]
 
 
-def test_downstream_has_the_writing_clauses_in_reach_the_best_first() -> None:
+def test_downstream_has_the_clauses_that_a_rule_can_help_to_write_best_first() -> None:
     m = rs.Module("m")
     entry, x, y = (m.signal(name) for name in ("entry", "x", "y"))
     out = m.slot("out")
@@ -86,7 +89,7 @@ def test_downstream_has_the_writing_clauses_in_reach_the_best_first() -> None:
     assert downstream(policy.rule_plan("m:plain")) == ()
 
 
-def test_grounded_has_the_signals_that_may_occur() -> None:
+def test_grounded_has_the_signals_that_can_follow_from_given_signals() -> None:
     policy, causes = chain()
     entry, x, y, z, out = signals(policy, "entry", "x", "y", "z", "out:changed")
     assert causes.grounded([entry]) >= {entry, x, y, z, out}
@@ -94,7 +97,7 @@ def test_grounded_has_the_signals_that_may_occur() -> None:
     assert causes.grounded([]) == frozenset()
 
 
-def test_a_grounded_effect_needs_a_whole_clause() -> None:
+def test_grounded_has_an_effect_only_if_a_whole_clause_is_met() -> None:
     m = rs.Module("m")
     a, b, c = (m.signal(name) for name in "abc")
     rule(m, "both", a & b, emits=c)

@@ -1,4 +1,4 @@
-"""Disjunctive normal form (L5): in declaration order, without duplicates, bounded."""
+"""The disjunctive normal form (L5) keeps declaration order, has no duplicates, and has a limit."""
 
 import pytest
 
@@ -67,7 +67,7 @@ def test_a_part_with_too_many_clauses_is_refused() -> None:
         normal_form(a & pairs(9) | b)
 
 
-def test_a_part_in_many_places_is_expanded_once() -> None:
+def test_a_part_that_occurs_many_times_is_expanded_once() -> None:
     condition: rs.Condition = a
     for _ in range(60):
         condition = condition & b | condition & c

@@ -1,4 +1,4 @@
-"""Compiling (L6): order, numbers from settings, and every fault at once, each with the text to write instead."""
+"""Compiling (L6): declaration order, numbers from settings, and all faults together, each with what to write."""
 
 import re
 import types
@@ -39,13 +39,13 @@ def faults(*modules: Any) -> list[str]:
 # ---------------------------------------------------------------------------------------- policies without faults
 
 
-def test_core_alone_is_a_policy() -> None:
+def test_without_modules_the_policy_has_only_core() -> None:
     policy = rs.compile()
     assert [module.name for module in policy.modules] == ["core"]
     assert list(policy.signals)[:3] == ["core:startup", "core:shutdown", "core:error"]
 
 
-def test_a_module_appears_once_and_after_the_modules_that_it_requires() -> None:
+def test_a_module_is_listed_once_and_after_the_modules_that_it_requires() -> None:
     base = rs.Module("base")
     left, right = rs.Module("left", requires=[base]), rs.Module("right", requires=[base])
     top = rs.Module("top", requires=[right, left])
@@ -69,7 +69,7 @@ def test_rules_clauses_and_names_keep_the_order_of_declaration() -> None:
     assert [clause.signals for clause in policy.clauses("m:z")] == [(a,), (b,)]
 
 
-def test_a_signal_that_no_rule_raises_or_with_input_true_is_an_input() -> None:
+def test_a_signal_is_an_input_if_no_rule_raises_it_or_if_it_is_declared_as_one() -> None:
     m = rs.Module("m")
     free, raised, both = m.signal("free"), m.signal("raised"), m.signal("both", input=True)
     rule(m, "r", free, emits=(raised, both), detached=True)
@@ -77,7 +77,7 @@ def test_a_signal_that_no_rule_raises_or_with_input_true_is_an_input() -> None:
     assert [policy.signal_of[f"m:{name}"].input for name in ("free", "raised", "both")] == [True, False, True]
 
 
-def test_coherence_joins_needs_with_a_common_cause() -> None:
+def test_constraints_with_a_common_cause_must_cohere() -> None:
     m = rs.Module("m")
     heard, seen = m.signal("heard"), m.signal("seen")
     question, about = m.signal("question"), m.signal("about")
@@ -195,7 +195,7 @@ def test_ages_that_exclude_each_other_are_refused() -> None:
 
 
 @pytest.mark.parametrize("age", [-1, float("nan"), float("inf"), -float("inf")])
-def test_an_age_that_is_no_number_of_seconds_is_refused(age: float) -> None:
+def test_an_age_that_is_negative_or_not_finite_is_refused(age: float) -> None:
     assert "m:go.min_age" in only_fault(lambda m, go: rule(m, "r", go.min_age(age).max_age(None)))
     text = only_fault(lambda m, go: rule(m, "r", go.max_age(age)))
     assert f"m:go.max_age={age!r}" in text.replace("-1.0", "-1") and "must be 0 s or more" in text
@@ -219,7 +219,7 @@ def test_a_number_out_of_range_is_refused(what: str, value: float, wanted: str) 
     assert text.endswith(f"{what}={float(value)!r} must be {wanted}")
 
 
-def test_the_edges_of_the_ranges_are_allowed() -> None:
+def test_the_extreme_values_of_each_range_are_allowed() -> None:
     m = rs.Module("m")
     go = m.signal("go")
     rule(m, "r", go.min_age(5).max_age(5), weight=1e-9, cooldown=0, patience=0, timeout=1e-9)
@@ -272,7 +272,7 @@ def test_ages_that_a_spike_can_have_are_allowed(least: Any, most: Any) -> None:
 )
 def test_ages_that_no_spike_can_have_are_refused(least: Any, most: Any, text: str) -> None:
     assert text in only_fault(lambda m, go: rule(m, "r", go.min_age(least).max_age(most)), settings=Late)
-    assert text in only_fault(  # also in a second clause, and for a detached constraint
+    assert text in only_fault(  # the same in a second clause, and for a detached constraint
         lambda m, go: rule(m, "r", m.signal("other") | go.detached().min_age(least).max_age(most)),
         settings=Late,
     )
@@ -305,7 +305,7 @@ def test_a_chain_of_requires_of_any_length_compiles() -> None:
 # ---------------------------------------------------------------------------------------- settings
 
 
-def test_a_setting_stands_for_its_default_until_settings_are_given() -> None:
+def test_a_reference_to_a_setting_means_its_default_until_settings_are_given() -> None:
     m = rs.Module("m", settings=Late)
     rule(m, "r", m.signal("go").min_age(Late.after), cooldown=rs.setting("after"))
     plan = rs.compile(m).rule_plan("m:r")
@@ -327,16 +327,16 @@ def test_a_setting_of_another_module_is_found_by_its_class() -> None:
         (Late.on, "the setting is True, not a number"),
     ],
 )
-def test_a_setting_must_be_there_and_be_a_number(ref: Any, text: str) -> None:
+def test_a_setting_that_is_missing_or_not_a_number_is_refused(ref: Any, text: str) -> None:
     assert text in only_fault(lambda m, go: rule(m, "r", go, cooldown=ref), settings=Late)
 
 
-def test_a_reference_needs_a_module_with_settings() -> None:
+def test_a_reference_to_a_setting_needs_a_module_with_settings() -> None:
     text = only_fault(lambda m, go: rule(m, "r", go, cooldown=rs.setting("after")))
     assert "module m has no settings: write rs.Module('m', settings=Settings) with a field after" in text
 
 
-def test_a_setting_out_of_range_shows_name_and_value() -> None:
+def test_the_error_about_a_setting_out_of_range_has_its_name_and_value() -> None:
     class Bad(rs.Settings):
         after: float = -2.0
 
@@ -344,7 +344,7 @@ def test_a_setting_out_of_range_shows_name_and_value() -> None:
     assert text.endswith("cooldown=Bad.after = -2.0 must be 0 s or more")
 
 
-# ---------------------------------------------------------------------------------------- unreachable, all at once
+# ---------------------------------------------------------------------------------------- unreachable, all together
 
 
 def test_rules_that_wait_only_for_each_other_are_unreachable() -> None:
@@ -375,7 +375,7 @@ def test_an_input_or_a_detached_rule_makes_a_cycle_reachable() -> None:
     rs.compile(n)
 
 
-def test_all_faults_are_reported_at_once() -> None:
+def test_all_faults_are_reported_together() -> None:
     elsewhere = rs.Module("elsewhere")
     word = elsewhere.signal("word")
     m, twin = rs.Module("m"), rs.Module("m")
@@ -397,7 +397,7 @@ def test_all_faults_are_reported_at_once() -> None:
         assert part in text
 
 
-def test_the_errors_are_declaration_errors_in_a_group() -> None:
+def test_the_faults_are_raised_as_a_group_of_declaration_errors() -> None:
     with pytest.raises(rs.RavestateError) as caught:
         rs.compile(None)
     assert isinstance(caught.value, ExceptionGroup)

@@ -1,4 +1,4 @@
-"""Conflicts (L10): the rules that exclude each other, the cause, the winner and its lead."""
+"""Conflicts (L10): which rules exclude each other, for which causes, which rule wins, and by how much."""
 
 import math
 
@@ -43,7 +43,7 @@ def test_a_rule_that_writes_nothing_has_no_conflict() -> None:
     assert rs.compile(m).conflicts() == ()
 
 
-def test_a_detached_constraint_is_no_cause() -> None:
+def test_a_detached_constraint_is_not_a_cause_of_a_conflict() -> None:
     m, heard, question, out, _ = talk()
     m.rule(when=heard, writes=out, name="a")(nothing)
     m.rule(when=question & heard.detached(), writes=out, name="b")(nothing)
@@ -59,7 +59,7 @@ def test_equal_utilities_tie_and_the_first_declared_goes_first() -> None:
     assert conflict.slots == ("m:out", "m:face")
 
 
-def test_a_weight_decides_also_where_there_is_no_information() -> None:
+def test_a_weight_decides_even_between_rules_with_a_utility_of_0() -> None:
     m, heard, _, out, _ = talk()
     m.rule(when=heard, writes=out, name="a")(nothing)
     m.rule(when=heard, writes=out, weight=1.2, name="b")(nothing)
@@ -67,15 +67,15 @@ def test_a_weight_decides_also_where_there_is_no_information() -> None:
     assert (conflict.winner, conflict.tie) == ("m:b", False)
 
 
-def test_pairs_keep_the_order_of_declaration() -> None:
+def test_conflicts_are_in_the_order_of_declaration() -> None:
     m, heard, _, out, _ = talk()
     for name in "abc":
         m.rule(when=heard, writes=out, name=name)(nothing)
     assert [c.rules for c in rs.compile(m).conflicts()] == [("m:a", "m:b"), ("m:a", "m:c"), ("m:b", "m:c")]
 
 
-def test_a_rule_conflicts_over_a_cause_even_if_it_also_looks_at_that_cause() -> None:
-    """The spike of `question` is in the group of `heard`: the detached constraint beside it changes nothing."""
+def test_a_rule_that_also_has_its_cause_as_a_detached_constraint_still_conflicts() -> None:
+    """The spike of `question` is in the group of `heard`. An additional detached constraint does not change this."""
     m, heard, question, out, _ = talk()
     m.rule(when=heard, emits=question, name="classify")(nothing)
     m.rule(when=heard, writes=out, name="chat")(nothing)
@@ -84,7 +84,7 @@ def test_a_rule_conflicts_over_a_cause_even_if_it_also_looks_at_that_cause() -> 
     assert (conflict.rules, conflict.causes) == (("m:chat", "m:answer"), ("m:heard",))
 
 
-def test_causes_are_all_common_signals_of_the_pathways() -> None:
+def test_the_causes_of_a_conflict_are_the_common_signals_of_the_pathways() -> None:
     m, heard, _, out, _ = talk()
     sources = [m.signal(f"s{number}") for number in range(400)]
     for source in sources:

@@ -1,4 +1,4 @@
-"""Findings: declarations that compile, but are probably a mistake."""
+"""Findings report declarations that compile, but are probably mistakes."""
 
 import inspect
 import queue
@@ -16,7 +16,7 @@ async def nothing(ctx: rs.RuleContext) -> None:
 
 
 class Scene:
-    """A module with an input and an output, and short ways to declare rules."""
+    """A module with an input and an output, and methods that make declarations short."""
 
     def __init__(self) -> None:
         self.module = rs.Module("m")
@@ -55,7 +55,7 @@ def test_a_rule_that_only_a_write_from_outside_can_start_is_reported(scene: Scen
     scene.module.slots.remove(mood)
 
 
-def test_a_rule_that_waits_for_a_rule_with_its_slot_is_unreachable(scene: Scene) -> None:
+def test_a_rule_that_waits_for_an_earlier_writer_of_its_slot_is_unreachable(scene: Scene) -> None:
     said = scene.module.signal("said")
     scene.rule("say", scene.heard, writes=scene.out, emits=said)
     scene.rule("again", said, writes=scene.out)
@@ -93,7 +93,7 @@ def test_a_rule_that_can_never_win_is_reported(scene: Scene) -> None:
         {"weight": 0.5},
     ],
 )
-def test_a_rule_that_may_win_is_not_reported(scene: Scene, first: dict[str, Any]) -> None:
+def test_a_rule_that_can_win_is_not_reported(scene: Scene, first: dict[str, Any]) -> None:
     ways = {
         "where": scene.heard.where(bool),
         "holds": scene.heard & scene.out.holds(bool),
@@ -107,7 +107,7 @@ def test_a_rule_that_may_win_is_not_reported(scene: Scene, first: dict[str, Any]
     assert ("never-wins", "m:second") not in scene.findings()
 
 
-def test_a_rule_with_one_clause_that_may_win_is_not_reported(scene: Scene) -> None:
+def test_a_rule_with_one_clause_that_can_win_is_not_reported(scene: Scene) -> None:
     scene.rule("first", scene.heard, writes=scene.out, weight=2)
     scene.rule("second", scene.heard | scene.module.signal("other"), writes=scene.out)
     assert ("never-wins", "m:second") not in scene.findings()
@@ -125,7 +125,7 @@ def test_a_tie_names_the_rule_that_goes_first(scene: Scene) -> None:
     )
 
 
-def test_a_weight_decides_a_tie_without_information(scene: Scene) -> None:
+def test_a_weight_decides_between_rules_with_a_utility_of_0(scene: Scene) -> None:
     scene.rule("left", scene.heard, writes=scene.out, cooldown=1.0)
     scene.rule("right", scene.heard, writes=scene.out, weight=1.2, cooldown=1.0)
     assert scene.findings() == {}
@@ -151,7 +151,9 @@ def test_signals_that_no_rule_hears_are_reported(scene: Scene) -> None:
     scene.rule("emit", scene.heard, emits=(lost, watched))
     scene.rule("watch", scene.heard, writes=scene.out, until=watched)
     found = scene.findings()
-    assert list(found) == [("unheard", "m:lost")]  # no rule raises `free`, and slots may be read
+    assert list(found) == [
+        ("unheard", "m:lost")
+    ]  # not reported: `free`, which no rule raises, and slots, which can be read
     assert (
         found["unheard", "m:lost"]
         == "unheard: no rule hears signal m:lost, which m:emit may raise; remove it, or write a rule that hears it"
@@ -169,7 +171,7 @@ def test_findings_come_in_the_order_of_their_kinds(scene: Scene) -> None:
 
 
 def test_the_advice_for_two_rules_at_startup_is_a_detached_constraint(scene: Scene) -> None:
-    """Startup comes once: neither one more signal nor a cooldown would help the second rule."""
+    """Because startup comes only once, neither another signal nor a cooldown would help the second rule."""
     scene.rule("listen", rs.startup, writes=scene.out, cooldown=5.0)
     scene.rule("serve", rs.startup, writes=scene.out)
     text = scene.findings()["never-wins", "m:serve"]
@@ -191,7 +193,7 @@ def test_only_the_tie_with_the_first_declared_rule_is_reported(scene: Scene) -> 
     assert all("rules m:r0 and" in text for text in ties)
 
 
-def test_predicates_on_payloads_hide_no_tie(scene: Scene) -> None:
+def test_rules_with_the_same_payload_predicate_tie(scene: Scene) -> None:
     def one(payload: object) -> bool:
         return payload == 1
 
@@ -214,7 +216,7 @@ def test_long_lists_of_names_are_cut(scene: Scene) -> None:
     assert "which m:r0, m:r1, m:r2, m:r3, m:r4, m:r5, m:r6, m:r7 and 42 more may raise" in text
 
 
-def test_the_message_names_the_best_winner(scene: Scene) -> None:
+def test_the_message_names_the_best_of_several_winners(scene: Scene) -> None:
     scene.rule("first", scene.heard, writes=scene.out, weight=2)
     scene.rule("best", scene.heard, writes=scene.out, weight=3)
     scene.rule("last", scene.heard, writes=scene.out)
@@ -236,7 +238,7 @@ def test_signals_that_no_rule_raises_are_reported(scene: Scene) -> None:
 # ---------------------------------------------------------------------------------------- loops (L23)
 
 
-def test_detached_rules_that_trigger_each_other_are_a_loop(scene: Scene) -> None:
+def test_detached_rules_that_trigger_each_other_are_reported_as_a_loop(scene: Scene) -> None:
     one, other = scene.module.signal("one"), scene.module.signal("other")
     scene.rule("start", scene.heard, emits=one)
     scene.rule("ping", one, emits=other, detached=True)
@@ -249,7 +251,7 @@ def test_detached_rules_that_trigger_each_other_are_a_loop(scene: Scene) -> None
     )
 
 
-def test_a_detached_constraint_makes_a_loop_too(scene: Scene) -> None:
+def test_a_loop_through_a_detached_constraint_is_reported(scene: Scene) -> None:
     tick = scene.module.signal("tick")
     scene.rule("again", tick.detached() | scene.heard, emits=tick)
     text = scene.findings()["loop", "m:again"]
@@ -273,7 +275,7 @@ def test_loops_that_end_or_take_time_are_not_reported(scene: Scene, end: str) ->
 
 
 @pytest.mark.parametrize("kind", ["async", "plain"])
-def test_a_rule_of_a_loop_that_awaits_takes_time(scene: Scene, kind: str) -> None:
+def test_a_loop_with_a_rule_that_sleeps_is_not_reported(scene: Scene, kind: str) -> None:
     tick = scene.module.signal("tick")
 
     async def wait(ctx: rs.RuleContext) -> None:
@@ -289,7 +291,7 @@ def test_a_rule_of_a_loop_that_awaits_takes_time(scene: Scene, kind: str) -> Non
     assert scene.findings() == {}
 
 
-def test_a_plain_function_that_may_wait_for_the_world_takes_time(scene: Scene) -> None:
+def test_a_loop_with_a_plain_function_that_can_wait_is_not_reported(scene: Scene) -> None:
     tick, frames = scene.module.signal("tick"), queue.Queue[str]()
 
     def watch(ctx: Any) -> None:
@@ -300,7 +302,7 @@ def test_a_plain_function_that_may_wait_for_the_world_takes_time(scene: Scene) -
     assert not [key for key in scene.findings() if key[0] == "loop"]
 
 
-def test_a_plain_function_that_acts_on_its_context_alone_makes_a_loop(scene: Scene) -> None:
+def test_a_loop_with_a_plain_function_that_only_uses_its_context_is_reported(scene: Scene) -> None:
     tick = scene.module.signal("tick")
 
     def work(ctx: Any) -> None:
@@ -313,7 +315,7 @@ def test_a_plain_function_that_acts_on_its_context_alone_makes_a_loop(scene: Sce
 # ---------------------------------------------------------------------------------------- source
 
 
-def test_source_is_examined_on_demand_only(scene: Scene) -> None:
+def test_the_source_of_rules_is_examined_only_on_demand(scene: Scene) -> None:
     @scene.module.rule(when=scene.heard)
     async def say(ctx: rs.RuleContext) -> None:
         ctx[scene_out] = "hello"

@@ -1,4 +1,4 @@
-"""The least pathway: exact against every union, and quick on large policies."""
+"""The search for the least pathway is exact on small policies, and quick on large policies."""
 
 from __future__ import annotations
 
@@ -40,14 +40,14 @@ def all_of(conditions: list[rs.Signal[None]]) -> rs.Condition:
 
 
 @pytest.mark.parametrize("count", [10, 1000, 3000])
-def test_the_least_pathway_in_a_ring_of_any_length(count: int) -> None:
+def test_the_least_pathway_is_found_in_a_ring_of_any_length(count: int) -> None:
     m = rs.Module("m")
     entry, ring = m.signal("entry"), signals(m, "s", count)
     m.rule(when=entry, emits=ring[0], name="enter")(nothing)
     for number in range(count):
         m.rule(when=ring[number], emits=ring[(number + 1) % count], name=f"r{number}")(nothing)
     policy = rs.compile(m)
-    # All rules but one have the whole ring on their pathways, and all have the entry.
+    # All rules except one have the whole ring on their pathways, and all rules have the entry.
     each = log((count + 1) / count)
     for number in (0, count // 2, count - 1):
         (clause,) = policy.clauses(f"m:r{number}")
@@ -57,7 +57,7 @@ def test_the_least_pathway_in_a_ring_of_any_length(count: int) -> None:
 
 
 @pytest.mark.parametrize("count", [3, 10, 40])
-def test_the_least_pathway_in_a_clique_of_any_size(count: int) -> None:
+def test_the_least_pathway_is_found_in_a_clique_of_any_size(count: int) -> None:
     m = rs.Module("m")
     entry, members = m.signal("entry"), signals(m, "s", count)
     m.rule(when=entry, emits=members, name="enter")(nothing)
@@ -71,10 +71,10 @@ def test_the_least_pathway_in_a_clique_of_any_size(count: int) -> None:
     assert policy.clauses("m:r0")[0].pathways[0] == {entry, members[1]}
 
 
-def test_the_least_pathway_in_a_chain_of_any_length() -> None:
+def test_the_least_pathway_is_found_in_a_chain_of_any_length() -> None:
     m = rs.Module("m")
     chain = signals(m, "s", 2000)
-    for number in reversed(range(1999)):  # effects first
+    for number in reversed(range(1999)):  # declares the effects before the causes
         m.rule(when=chain[number], emits=chain[number + 1], name=f"r{number}")(nothing)
     policy = rs.compile(m)
     assert policy.utility("m:r0") == 0.0
@@ -82,8 +82,8 @@ def test_the_least_pathway_in_a_chain_of_any_length() -> None:
     assert policy.clauses("m:r1998")[0].pathways == (frozenset(chain[:-1]),)
 
 
-def test_the_least_pathway_with_two_causes_at_each_step_of_a_chain() -> None:
-    """There are 2^60 pathways. The first cause of each pair is on one rule more, so it has less information."""
+def test_the_least_pathway_is_found_with_two_causes_at_each_step_of_a_chain() -> None:
+    """There are about 2^60 pathways. The first cause of each pair is on one more rule, so it has less information."""
     m = rs.Module("m")
     firsts, seconds = signals(m, "a", 60), signals(m, "b", 60)
     for number in range(59):
@@ -105,7 +105,7 @@ def test_the_least_pathway_with_two_causes_at_each_step_of_a_chain() -> None:
 
 
 def _counts(policy: rs.Policy) -> dict[str, int]:
-    """Count the rules with each signal on a pathway, by a walk from the rules."""
+    """Count, for each signal, the rules with this signal on a pathway. Walk from each rule back to its causes."""
     raisers: dict[str, list[str]] = {}
     for name, rule in policy.rules.items():
         for signal in rule.emits:
@@ -144,11 +144,11 @@ def test_the_cost_of_independent_choices_adds_up_and_does_not_multiply() -> None
     m.rule(when=all_of(wanted), name="all")(nothing)
     (clause,) = rs.compile(m).clauses("m:all")
     assert clause.pathways[0] == {*wanted, *cheap}
-    assert len(clause.pathways) == MAX_PATHWAYS  # of 3^40 pathways
+    assert len(clause.pathways) == MAX_PATHWAYS  # although there are 3^40
 
 
 def test_the_search_in_a_torus_ends() -> None:
-    """A torus: rings through rings, with one input."""
+    """A torus is a grid whose rows and columns are rings. It has one input."""
     m = rs.Module("m")
     side = 12
     entry, nodes = m.signal("entry"), signals(m, "s", side * side)
@@ -158,20 +158,20 @@ def test_the_search_in_a_torus_ends() -> None:
         m.rule(when=nodes[row * side + column], emits=(nodes[right], nodes[down]), name=f"r{row}_{column}")(nothing)
     policy = rs.compile(m)
     least = log((side * side + 1) / (side * side))
-    for row, column in ((0, 0), (0, 3), (2, 2)):  # near the entry, it is exact
+    for row, column in ((0, 0), (0, 3), (2, 2)):  # near the entry, the utility is exact
         assert policy.utility(f"m:r{row}_{column}") == pytest.approx(least * (row + column + 1))
     for name in policy.rules:
         assert 0 <= policy.utility(name) <= least * side * side
     (clause,) = policy.clauses("m:r11_11")
-    assert len(clause.pathways) == 1  # only the best one that the search found
+    assert len(clause.pathways) == 1  # only the best pathway that the search found
 
 
-# ------------------------------------------------------------------------------- against every union
+# ------------------------------------------------------------------------------- small policies
 
 
 @given(st.integers(0, 10_000))
-def test_the_least_union_of_causes_with_common_causes(seed: int) -> None:
-    """Set cover: seven signals, each with three causes, over six inputs."""
+def test_the_least_pathway_is_exact_even_if_signals_have_common_causes(seed: int) -> None:
+    """This is a set-cover problem: seven signals, each with three causes, each of which needs some of six inputs."""
     dice = random.Random(seed)
     m = rs.Module("m")
     inputs, wanted = signals(m, "i", 6), signals(m, "x", 7)

@@ -1,4 +1,4 @@
-"""Utilities: the paper's worked example to six decimals, and L8 and L9 computed again on random policies."""
+"""Utilities: the paper's worked example to six decimals, and random policies against a simple version of L8 and L9."""
 
 from __future__ import annotations
 
@@ -54,7 +54,7 @@ def worked_example() -> rs.Module:
         ("Question", 0.0), ("AboutAgent", 0.0), ("Games", 0.0),
     ],
 )  # fmt: skip
-def test_the_worked_example_to_six_decimals(rule: str, utility: float) -> None:
+def test_the_utilities_of_the_worked_example_are_exact_to_six_decimals(rule: str, utility: float) -> None:
     policy = rs.compile(worked_example())
     assert len(policy.rules) == 8
     assert round(policy.utility(f"m:{rule}"), 6) == utility
@@ -70,7 +70,7 @@ def test_the_worked_example_to_six_decimals(rule: str, utility: float) -> None:
         ("Nice weather.", ["Wildtalk"], ""),
     ],
 )
-def test_the_speaker_in_the_worked_example(text: str, said: list[str], face: str) -> None:
+def test_the_rule_with_the_greatest_utility_speaks_in_the_worked_example(text: str, said: list[str], face: str) -> None:
     m = worked_example()
     with simulate(m) as sim:
         sim.say(text)
@@ -79,14 +79,14 @@ def test_the_speaker_in_the_worked_example(text: str, said: list[str], face: str
         assert sim.read(m.slots[0]) == face
 
 
-# ------------------------------------------------------------- an interpreter of L8 and L9, on random policies
+# ------------------------------------------------------------- a simple version of L8 and L9, on random policies
 
 Constraint = tuple[str, bool, int]
 """A signal's name, whether the constraint is detached, and its number of predicates."""
 
 
 class Sketch:
-    """A rule of a random policy, in plain data."""
+    """A rule of a random policy, as plain data."""
 
     def __init__(self, clauses: list[list[Constraint]], gates: list[int], causes: set[str], detached: bool) -> None:
         self.clauses = clauses
@@ -101,8 +101,7 @@ Pathway = frozenset[str]
 def completions(signal: str, way: Pathway, rules: list[Sketch], inputs: set[str]) -> set[Pathway]:
     """Return the completions of a signal: the signal and, recursively, its causes, once for each way to cause it (L8).
 
-    `way` has the signals between the clause and this one. A signal that is on the way already closes a cycle, which is
-    cut.
+    `way` has the signals between the clause and `signal`. If `signal` is already in it, there is a cycle, which is cut.
     """
     if signal in way:
         return {frozenset()}
@@ -118,7 +117,7 @@ def completions(signal: str, way: Pathway, rules: list[Sketch], inputs: set[str]
 
 
 def pathways(clause: list[Constraint], way: Pathway, rules: list[Sketch], inputs: set[str]) -> set[Pathway]:
-    """Return every combination of the clause with one completion for each of its non-detached constraints."""
+    """Return the pathways of a clause. Each combines one completion of each of its non-detached constraints."""
     choices = [
         {frozenset({signal})} if detached else completions(signal, way, rules, inputs) for signal, detached, _ in clause
     ]
@@ -208,7 +207,7 @@ def joined(parts: list[rs.Condition], operator: str) -> rs.Condition:
 
 
 @given(st.data())
-def test_pathways_and_utilities_are_those_of_the_laws(data: st.DataObject) -> None:
+def test_pathways_and_utilities_of_random_policies_follow_the_laws(data: st.DataObject) -> None:
     world = World(data)
     try:
         policy = rs.compile(world.module)
@@ -217,7 +216,7 @@ def test_pathways_and_utilities_are_those_of_the_laws(data: st.DataObject) -> No
         assume(False)
         return
     expected = utilities(world.rules, world.inputs)
-    assume(max(len(found) for rule in expected for found, _ in rule) <= 100)  # the policy drops none
+    assume(max(len(found) for rule in expected for found, _ in rule) <= 100)  # the policy has dropped none of them
     for number, of_rule in enumerate(expected):
         clauses = policy.clauses(f"m:r{number}")
         assert len(clauses) == len(of_rule)

@@ -1,4 +1,4 @@
-"""The policy: immutable, shared, with its parts by name."""
+"""A policy is immutable and can be shared. Its parts have names."""
 
 from collections.abc import Callable
 from typing import Any
@@ -41,7 +41,7 @@ def test_the_parts_of_a_policy_have_names_and_cannot_change() -> None:
     assert repr(policy) == "<policy of 2 rules in 2 modules>"
 
 
-def test_a_rule_may_be_given_by_its_name() -> None:
+def test_a_rule_can_be_given_by_its_name() -> None:
     assert policy.utility(add) == policy.utility("demo:add")
     assert policy.clauses(late) == policy.clauses("demo:late")
 
@@ -52,7 +52,7 @@ def test_the_message_about_an_unknown_rule_names_the_nearest(ask: str) -> None:
         getattr(policy, ask)("demo:ad")
 
 
-def test_later_declarations_are_in_the_next_policy_only() -> None:
+def test_later_declarations_are_only_in_the_next_policy() -> None:
     m = rs.Module("m")
     s = m.signal("s")
     before = rs.compile(m)
@@ -86,7 +86,7 @@ def test_settings_replace_the_numbers_that_name_them() -> None:
     assert changed.settings == {"demo": Late(after=4.0)}
 
 
-def test_settings_leave_a_policy_that_refers_to_none_as_it_is() -> None:
+def test_a_policy_without_references_to_settings_stays_the_same_object() -> None:
     plain = rs.compile(rs.Module("plain"))
     assert plain.with_settings({}) is plain
 
@@ -119,10 +119,12 @@ def test_adding_a_rule_makes_a_new_policy() -> None:
     assert list(more.rules) == ["demo:add", "demo:late", "added:extra"]
     assert list(policy.rules) == ["demo:add", "demo:late"]
     assert [p.index for p in more.rule_plans] == [0, 1, 2]
-    assert more.utility("demo:late") > policy.utility("demo:late")  # of three rules, only one stands on `stop`
+    assert more.utility("demo:late") > policy.utility(
+        "demo:late"
+    )  # `stop` is on the pathways of one rule of three, not of two
 
 
-def test_a_new_rule_may_refer_to_a_setting() -> None:
+def test_an_added_rule_can_refer_to_a_setting() -> None:
     plain = rs.Module("plain", settings=Late)
     plain.signal("x")
     base = rs.compile(plain)

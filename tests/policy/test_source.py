@@ -1,4 +1,4 @@
-"""Undeclared acts and forgotten awaits, seen in the source of a rule's function."""
+"""`check` finds undeclared acts and forgotten awaits in the source of a rule's function."""
 
 import functools
 import inspect
@@ -22,7 +22,7 @@ class Names:
 
 
 def acts(function: Callable[..., Any], source: Any = inspect.getsource, **options: Any) -> tuple[Acts, list[str]]:
-    """Make a rule of a function. Return its acts, and phrases for those that it does not declare."""
+    """Make a function a rule. Return its acts, and a phrase for each act that the rule does not declare."""
     module = rs.Module("rules", requires=[demo])
     module.rule(when=go, name="work", **options)(function)
     plan = rs.compile(module).rule_plan("rules:work")
@@ -55,12 +55,12 @@ def test_every_access_of_a_rule_to_its_context_is_found() -> None:
     ]
 
 
-def test_declared_accesses_are_not_faults() -> None:
+def test_declared_accesses_cause_no_finding() -> None:
     _, faults = acts(everything, reads=lit, writes=(face, mood, people), emits=done)
     assert len(faults) == 1 and "payload" in faults[0]
 
 
-def test_names_of_a_closure_and_of_modules_are_resolved() -> None:
+def test_names_from_closures_and_modules_are_resolved() -> None:
     here = rs.Module("here").slot("here")
     from ravestate.modules import rawio
 
@@ -102,20 +102,20 @@ async def wrapped(ctx: Any) -> None:
 
 
 @pytest.mark.parametrize("function", [shadowed, replaced, inner, unknown, wrapped, functools.partial(everything)])
-def test_names_that_cannot_be_resolved_raise_no_alarm(function: Any) -> None:
+def test_names_that_cannot_be_resolved_cause_no_finding(function: Any) -> None:
     found, faults = acts(function)
     assert (found, faults) == (Acts(), [])
 
 
 @pytest.mark.parametrize("error", [OSError, TypeError, SyntaxError])
-def test_a_function_without_source_raises_no_alarm(error: type[Exception]) -> None:
+def test_a_function_without_source_causes_no_finding(error: type[Exception]) -> None:
     def source(function: Any) -> str:
         raise error
 
     assert acts(everything, source) == (Acts(), [])
 
 
-def test_an_import_that_fails_raises_no_alarm() -> None:
+def test_a_failed_import_causes_no_finding() -> None:
     lazy = ModuleType("lazy")
 
     def fails(name: str) -> Any:
@@ -131,7 +131,7 @@ def test_an_import_that_fails_raises_no_alarm() -> None:
     assert acts(broken) == (Acts(), [])
 
 
-def test_names_that_do_not_exist_are_found_with_the_nearest() -> None:
+def test_a_name_that_does_not_exist_is_found_with_a_suggestion() -> None:
     """A misspelt slot or signal fails when the rule runs; `check` finds it before."""
     from ravestate.modules import idle, rawio
 
@@ -157,7 +157,7 @@ def test_names_that_do_not_exist_are_found_with_the_nearest() -> None:
     ]
 
 
-def test_builtins_and_names_bound_in_the_function_exist() -> None:
+def test_builtins_and_local_names_cause_no_finding() -> None:
     async def work(ctx: Any) -> None:
         import ravestate.modules.modality.rawio as io
 
@@ -169,7 +169,7 @@ def test_builtins_and_names_bound_in_the_function_exist() -> None:
     assert acts(work)[0].unknown == {}
 
 
-def test_a_closure_without_its_value_yet_raises_no_alarm() -> None:
+def test_a_closure_variable_without_a_value_causes_no_finding() -> None:
     def work(ctx: Any) -> None:
         ctx[later] = 1
 
@@ -177,7 +177,7 @@ def test_a_closure_without_its_value_yet_raises_no_alarm() -> None:
     later = 1
 
 
-def test_a_branch_that_an_enclosing_function_decides_raises_no_alarm() -> None:
+def test_a_branch_that_a_closure_variable_excludes_causes_no_finding() -> None:
     def make(quiet: bool) -> Any:
         async def say(ctx: Any) -> None:
             if quiet:
@@ -196,7 +196,7 @@ def test_a_branch_that_an_enclosing_function_decides_raises_no_alarm() -> None:
     assert len(faults) == 1 and faults[0].startswith("emits demo:done")
 
 
-def test_a_branch_that_a_slot_of_an_enclosing_function_decides_is_examined() -> None:
+def test_a_branch_that_depends_on_the_value_of_a_slot_is_examined() -> None:
     feeling = mood
 
     async def say(ctx: Any) -> None:
@@ -206,7 +206,7 @@ def test_a_branch_that_a_slot_of_an_enclosing_function_decides_is_examined() -> 
     assert list(acts(say)[0].emits) == [done]
 
 
-def test_the_advice_names_built_in_signals_as_they_are_imported() -> None:
+def test_the_advice_writes_built_in_signals_as_rs_dot_name() -> None:
     async def look(ctx: Any) -> None:
         ctx[rs.pressure]
 
@@ -227,6 +227,6 @@ async def guarded(ctx: Any) -> None:
         ctx[mood] = "quiet"
 
 
-def test_guarded_code_raises_no_alarm() -> None:
+def test_code_behind_a_guard_for_missing_names_causes_no_finding() -> None:
     found, missing = acts(guarded, writes=mood)
     assert (list(found.unknown), missing) == ([], [])

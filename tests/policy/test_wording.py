@@ -1,4 +1,4 @@
-"""Lists of names in messages."""
+"""Messages list names without repetitions, and only a few of them."""
 
 import pytest
 

@@ -9,15 +9,15 @@ from ravestate.engine.engine import Engine
 from ravestate.engine.events import Event
 
 BIRTHS = 2_000
-"""Spikes in one instant after which it counts as endless."""
+"""The number of spikes after which an instant counts as endless."""
 
 
 class Endless(AssertionError):
-    """The engine does not come to rest within one instant."""
+    """Raised if the engine does not come to rest within one instant."""
 
 
 class Counted:
-    """An engine that raises `Endless` if it does not come to rest within one instant. It has all that an `Engine` has."""
+    """An engine that raises `Endless` if it does not come to rest within one instant. It has an engine's methods."""
 
     def __init__(self, policy: rs.Policy, **options: Any) -> None:
         self.engine = Engine(policy, **options)
@@ -25,7 +25,7 @@ class Counted:
 
     @property
     def births(self) -> int:
-        """The number of spikes in this instant."""
+        """The number of spikes that were born in this instant."""
         return self.engine.state.spikes - self.before
 
     @births.setter

@@ -1,4 +1,4 @@
-"""Random worlds in which many rules hear one input: several outputs, guards, fallbacks that recover, cycles of topics."""
+"""Random worlds in which many rules hear one input, with slot predicates, cool-downs and cycles of topics."""
 
 from __future__ import annotations
 
@@ -9,7 +9,7 @@ from properties.worlds import Act, Clause, Gate, Op, RuleOf, SignalOf, SlotOf, W
 
 
 def crowd_world_of(seed: int) -> World:
-    """Return the world of a seed. A world that does not compile gives way to the next."""
+    """Return the world of a seed: the first random world that compiles."""
     chance = random.Random(f"crowd {seed}")
     while not compiles(world := _world(chance)):
         pass
@@ -19,7 +19,7 @@ def crowd_world_of(seed: int) -> World:
 def _world(chance: random.Random) -> World:
     topics = [f"s{n}" for n in range(1, chance.randint(2, 5))]
     slots = [f"v{n}" for n in range(chance.randint(1, 3))]
-    dense = chance.random() < 0.5  # many topics lead to each other
+    dense = chance.random() < 0.5  # many rules raise topics, so topics lead to each other
     alike = chance.random() < 0.5  # most rules write the same slots
     common = tuple(chance.sample(slots, chance.choice((1, 1, len(slots)))))
     rules: list[RuleOf] = []

@@ -1,9 +1,8 @@
-"""Random worlds, played on the engine and on the interpreter of the laws (``laws/model.py``), and with a tracer.
+"""Compare the engine with the interpreter of the laws (``laws/model.py``) on random worlds, with and without a tracer.
 
-``python -m properties.fuzz [COUNT] [FIRST] [MOST]`` plays COUNT seeds, fresh ones or those from FIRST. A third of the
-seeds are any worlds, a third worlds of pairs (``pair_worlds.py``), and a third crowds (``crowd_worlds.py``); many of them
-are varied (``variations.py``). It prints
-the smallest world for each of the first MOST differences.
+``python -m properties.fuzz [COUNT] [FIRST] [MOST]`` plays COUNT seeds, from FIRST or from a random number on. It prints
+the smallest world for each of the first MOST differences. The seeds give three kinds of worlds in turn:
+``random_worlds.py``, ``pair_worlds.py`` and ``crowd_worlds.py``. Many of them are varied (``variations.py``).
 """
 
 from __future__ import annotations
@@ -30,7 +29,7 @@ from ravestate.policy.policy import Policy
 from ravestate.runtime.journal import Entry, replay
 
 MOMENTS = 300
-"""Moments of a play that are compared."""
+"""The number of moments of a play that are compared."""
 
 STEPS = 3_000
 """The number of derivation steps after which the interpreter, which has no cache, gives up a play."""
@@ -48,11 +47,11 @@ def any_world_of(seed: int) -> World:
 
 
 class Enough(Exception):
-    """The rest of a play would take the interpreter too long."""
+    """Raised if the rest of a play would take the interpreter too long."""
 
 
 class Interpreter(Model):
-    """The interpreter, which detects an endless instant."""
+    """The interpreter of the laws. It also detects an endless instant."""
 
     births = 0
 
@@ -69,7 +68,10 @@ class Interpreter(Model):
 
 
 def story(world: World, machine: Any, names: Names, policy: Policy) -> list[str]:
-    """Play a world that `compiled` has made; return what a machine did, a line for each effect."""
+    """Play a world on a machine: an engine or an interpreter. Return a line for each effect.
+
+    `names` and `policy` come from `compiled`.
+    """
     lines: list[str] = []
 
     def told(play: Play, effect: Effect) -> None:
@@ -97,7 +99,7 @@ def story(world: World, machine: Any, names: Names, policy: Policy) -> list[str]
 
 
 def played(play: Play) -> list[str]:
-    """Continue the play; return the reason if it ends early."""
+    """Play to the end. If the play ends early, return the reason as the only line."""
     try:
         for _ in range(MOMENTS):
             if not play.step():
@@ -110,14 +112,14 @@ def played(play: Play) -> list[str]:
 
 
 def shown(payload: Any) -> str:
-    """Return a payload as text. The text of a failure leaves out its wording."""
+    """Return a payload as text. The text of a failure has the type of its exception, but not its message."""
     if isinstance(payload, RuleFailure):
         return f"{payload.rule}: {type(payload.exception).__name__}"
     return repr(payload)
 
 
 def difference(world: World) -> str:
-    """Return where the engine departs from the laws, in words; an empty text if it does not."""
+    """Return a text that shows where the engine departs from the laws, or an empty text if it follows them."""
     made = compiled(world)
     laws, engine = story(world, Interpreter, *made), story(world, Counted, *made)
     for number in range(max(len(laws), len(engine))):
@@ -132,10 +134,11 @@ def difference(world: World) -> str:
 
 
 def observation(world: World) -> str:
-    """Return what a tracer changes, in words; an empty text if it changes nothing (L24, L25).
+    """Return a text that shows what a tracer changes, or an empty text if it changes nothing (L24, L25).
 
-    It must not change the effects, even if it comes and goes. A journal written with a tracer must replay without one,
-    and the other way round. The trace must always have the present reasons of all waiting activations.
+    A tracer must not change the effects, even if it is added and removed during the play. A journal written with a
+    tracer must replay without a tracer, and the other way round. The trace must always have the present reasons of all
+    waiting activations.
     """
     reasons = Reasons()
     names, policy = compiled(world)
@@ -151,23 +154,23 @@ def observation(world: World) -> str:
     if reasons.fault:
         return reasons.fault
     if not _repeats(plain, tracer=_ignore):
-        return "  a journal replays otherwise with a tracer"
+        return "  a journal written without a tracer gives other effects with a tracer"
     if not _repeats(traced, tracer=None):
-        return "  a journal written with a tracer replays otherwise without"
+        return "  a journal written with a tracer gives other effects without a tracer"
     return ""
 
 
 class Reasons:
-    """Compares the reasons to wait in a trace with those in the engine."""
+    """Compares the reasons of waits in a trace with the reasons in the engine."""
 
     def __init__(self) -> None:
         self.told: dict[int, tuple[str, ...]] = {}
-        """Number of an activation → the names of the rules for which it waits."""
+        """For the number of each waiting activation: the names of the rules for which it waits."""
         self.fault = ""
-        """The first difference, in words, or an empty text."""
+        """The first difference as text, or an empty text."""
 
     def note(self, record: Record) -> None:
-        """Note the reason in a record."""
+        """Remember the reason in a record."""
         if isinstance(record, Waits):
             self.told[record.activation] = record.for_
 
@@ -180,7 +183,7 @@ class Reasons:
 
 
 def _switch(play: Play) -> None:
-    """Add a tracer, or remove it."""
+    """Add or remove the tracer."""
     play.engine.tracer = None if play.engine.tracer is not None or not len(play.journal) % 3 else _ignore
 
 
@@ -189,7 +192,7 @@ def _ignore(record: Record) -> None:
 
 
 def _repeats(play: Play, *, tracer: Tracer | None) -> bool:
-    """Return whether the journal of a play gives the same effects, with this tracer."""
+    """Return whether the journal of a play gives the same effects if it is replayed with this tracer."""
     assert play.policy is not None
     engine = Engine(play.policy, patience=play.world.patience, report_ends=True)
     engine.tracer = tracer
@@ -197,7 +200,7 @@ def _repeats(play: Play, *, tracer: Tracer | None) -> bool:
 
 
 def verdict(world: World) -> str:
-    """Return whether the engine keeps to the laws: an empty text, the kind of a fault, or the name of an exception."""
+    """Return the kind of a fault, the repr of an exception, or an empty text if the engine follows the laws."""
     try:
         return "differs" if difference(world) else "a tracer changes it" if observation(world) else ""
     except Exception as exception:
@@ -205,7 +208,7 @@ def verdict(world: World) -> str:
 
 
 def main(count: int, first: int, most: int = 1) -> int:
-    """Play `count` seeds; stop after `most` differences. Return how many there were."""
+    """Play `count` seeds. Shrink and print the first `most` differences. Return the number of differences."""
     faults: list[int] = []
     start = time.process_time()
     for seed in range(first, first + count):

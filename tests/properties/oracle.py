@@ -1,4 +1,4 @@
-"""Assertions about every play, from the observable behaviour and tables of the engine."""
+"""Assertions that hold for every play. They examine the behaviour and the tables of the engine."""
 
 from __future__ import annotations
 
@@ -25,7 +25,7 @@ __all__ = [
 
 @dataclass
 class Started:
-    """A run at its start."""
+    """A run, and what it held at its start."""
 
     run: int
     rule: str
@@ -37,12 +37,12 @@ class Started:
 
     @property
     def counts(self) -> bool:
-        """Return whether it still excludes others: it runs, or it has fired."""
+        """Return whether this run still excludes others, because it runs or has fired."""
         return self.fired or not self.over
 
 
 class Exclusion:
-    """No two runs that exclude each other both run or fire (L10, L15, L18)."""
+    """Asserts that two runs that exclude each other never run together, and never both fire (L10, L15, L18)."""
 
     def __init__(self) -> None:
         self.runs: dict[int, Started] = {}
@@ -61,7 +61,7 @@ class Exclusion:
         activation = engine.state.running[effect.run]
         clause, rule = activation.clause, activation.clause.rule
         name = rule.name
-        assert rule.index not in engine.state.retired, f"{name} has retired, and runs"
+        assert rule.index not in engine.state.retired, f"{name} runs although it has retired"
         held = list(zip(clause.needs, activation.spikes, strict=True))
         firm: list[Any] = []
         for need, spike in held:
@@ -69,7 +69,7 @@ class Exclusion:
             assert spike.signal is need.signal, f"{name} holds {spike} as {need.signal}"
             assert spike.born + need.min_age <= engine.now, f"{name} runs on {spike}, which is too young"
             for predicate in need.predicates:
-                assert predicate(spike.payload), f"{name} runs on {spike}, which does not fulfil {predicate}"
+                assert predicate(spike.payload), f"{name} runs on {spike}, but {predicate} is false for it"
             if not need.detached:
                 firm.append(spike)
         for slot, guard in clause.guards:
@@ -80,7 +80,7 @@ class Exclusion:
                     a, b = activation.spike(one), activation.spike(other)
                     assert a.group.root() is b.group.root(), f"{name} joins {a} and {b} of different groups"
         key = (clause.index, tuple(spike.id for _, spike in held))
-        # Detached spikes serve any number of runs (L19), so a clause without other spikes may run twice on the same ones.
+        # Detached spikes serve any number of runs (L19), so a clause with only such spikes can run twice on them.
         assert not firm or key not in self.seen, f"{name} runs twice on {activation.spikes}"
         self.seen.add(key)
         groups = tuple(dict.fromkeys(spike.group.root() for spike in firm)) if rule.slots else ()
@@ -110,24 +110,27 @@ class Exclusion:
 
 
 def waits_for_a_reason(play: Play) -> None:
-    """Assert that each wait has a reason, a viable rival or a taken slot, and an end (L15, L16)."""
+    """Assert that each wait ends, and has a reason: a viable rival or a taken slot (L15, L16)."""
     engine = play.engine
     due = engine.next_deadline()
     if engine.state.waiting and not engine.state.running:
-        assert due is not None, f"{list(engine.state.waiting)} wait, and nothing will ever happen"
+        assert due is not None, f"{list(engine.state.waiting)} wait although no run and no deadline is left"
     if due is not None:
         assert due >= engine.now, f"a deadline at {due} s is past at {engine.now} s"
     for waiter in list(engine.state.waiting):
         assert waiter.state == State.WAITING
-        assert waiter.clause.rule.slots, f"{waiter} writes nothing, and waits"
+        assert waiter.clause.rule.slots, f"{waiter} waits although it writes nothing"
         assert engine.parts.agenda.consent.ask(waiter, commit=False), (
-            f"{waiter} waits, and no group would refuse consent"
+            f"{waiter} waits although no group would refuse consent"
         )
-    assert not stalemate(engine.parts.agenda.consent, engine.state.waiting), "activations wait for each other alone"
+    assert not stalemate(engine.parts.agenda.consent, engine.state.waiting), "activations wait only for each other"
 
 
 def joined(play: Play) -> None:
-    """Assert that no activation lacks a live spike that is younger, fits, and is of the right group (L12)."""
+    """Assert that no activation lacks a signal although a spike is live that fits it (L12).
+
+    Such a spike is younger than the activation, meets the constraint, and belongs to the right group.
+    """
     engine = play.engine
     for activation in play.active():
         if activation.state != State.GATHERING:
@@ -143,12 +146,12 @@ def joined(play: Play) -> None:
             for spike in engine.state.live.get(need.signal.index, ()):
                 apart = any(group is not spike.group.root() for group in held)
                 assert apart or activation.id > spike.before or not engine.state.fits(need, spike), (
-                    f"{activation} lacks {need.signal}, and does not take {spike}"
+                    f"{activation} lacks {need.signal}, but does not take {spike}"
                 )
 
 
 def still(play: Play) -> dict[str, Any]:
-    """Return a snapshot without the parts that time alone changes."""
+    """Return a snapshot without the parts that change only because time passes."""
     found = snapshot(play.engine)
     del found["now"]
     for spike in found["spikes"]:
@@ -166,37 +169,43 @@ def consistent(engine: Any) -> None:
     for activation in activations:
         clause = activation.clause
         state = activation.state
-        assert state != State.ENDED, f"{activation} has ended, and is kept"
+        assert state != State.ENDED, f"{activation} has ended, but is kept"
         for need in clause.needs:
             spike = activation.spike(need)
-            assert (spike is None) == bool(activation.missing & need.bit), f"{activation} misses {need}?"
+            assert (spike is None) == bool(activation.missing & need.bit), (
+                f"{activation} is wrong about whether it lacks {need}"
+            )
             lacks = activation in engine.state.lacking.get(need, ())
             assert lacks == (spike is None), f"{activation} is{'' if lacks else ' not'} listed as lacking {need}"
             if spike is not None:
-                assert activation in spike.holders, f"{spike} does not know of {activation}"
+                assert activation in spike.holders, f"{activation} holds {spike}, which does not have it as a holder"
                 if state < State.RUNNING:
-                    assert spike in engine.state.live.get(spike.signal.index, ()), f"{activation} holds dead {spike}"
-        assert activation.missing != clause.all_bits, f"{activation} holds nothing"
-        assert (state == State.WAITING) == (activation in engine.state.waiting), f"{activation} waits?"
+                    assert spike in engine.state.live.get(spike.signal.index, ()), (
+                        f"{activation} holds {spike}, which is not live"
+                    )
+        assert activation.missing != clause.all_bits, f"{activation} holds no spike"
+        assert (state == State.WAITING) == (activation in engine.state.waiting), (
+            f"the state of {activation} and the list of waiting activations disagree"
+        )
         assert (state >= State.RUNNING) == (engine.state.running.get(activation.number) is activation)
         for group in activation.firm_groups():
-            assert group.has(activation), f"{group} does not know of {activation}"
+            assert group.has(activation), f"{group} does not have the member {activation}"
             for member in group.members:
-                assert group in member.firm_groups(), f"{member} holds nothing of {group}, and is in it"
+                assert group in member.firm_groups(), f"{member} is in {group}, but holds no spike of it"
             for waiter in group.interested:
-                assert waiter in engine.state.waiting, f"{waiter} does not wait, and is in {group}"
+                assert waiter in engine.state.waiting, f"{waiter} is in {group} as interested, but does not wait"
             for slot, holders in group.taken.items():
                 assert holders is None or (holders and all(h.state >= State.RUNNING for h in holders)), slot
     known = set(activations)
     for where in (engine.state.waiting, engine.state.gated, engine.state.alternatives, engine.state.running.values()):
         assert known.issuperset(where)
     for need, lacking in engine.state.lacking.items():
-        assert lacking, f"an empty set of those who lack {need} is kept"
+        assert lacking, f"an empty set of activations that lack {need} is kept"
         assert known.issuperset(lacking)
     for index, spikes in engine.state.live.items():
-        assert spikes, f"an empty set of {engine.policy.signal_plans[index]} is kept"
+        assert spikes, f"an empty set of spikes of {engine.policy.signal_plans[index]} is kept"
         for spike in spikes:
-            assert known.issuperset(spike.holders), f"{spike} is held by {list(spike.holders)}"
+            assert known.issuperset(spike.holders), f"{spike} has a holder that has ended: {list(spike.holders)}"
             signal = spike.signal
             assert (
                 spike.holders or spike.in_halves or (signal.retain >= 0 and spike.born + signal.retain >= engine.now)
@@ -207,9 +216,11 @@ def consistent(engine: Any) -> None:
     for half, spikes in engine.state.halves.items():
         assert spikes, f"an empty table of {half} is kept"
         for spike in spikes:
-            assert half in engine.state.halves_of(spike), f"{spike} does not know of {half}"
-            assert any(engine.state.keeps(need, spike) for need in half.needs), f"{half} holds {spike} for nothing"
-            assert spike in engine.state.live.get(spike.signal.index, ()), f"{half} holds dead {spike}"
+            assert half in engine.state.halves_of(spike), f"{half} holds {spike}, which does not have it as a holder"
+            assert any(engine.state.keeps(need, spike) for need in half.needs), (
+                f"{half} holds {spike}, which fits none of its needs"
+            )
+            assert spike in engine.state.live.get(spike.signal.index, ()), f"{half} holds {spike}, which is not live"
 
 
 def untouched(play: Play) -> None:
@@ -227,7 +238,7 @@ def untouched(play: Play) -> None:
 
 
 def bounded(play: Play) -> None:
-    """Assert all that holds whenever the engine is quiet."""
+    """Assert everything that must hold whenever the engine has settled."""
     untouched(play)
     consistent(play.engine)
     joined(play)
@@ -236,10 +247,10 @@ def bounded(play: Play) -> None:
     policy = engine.policy
     others = [one for each in stand_ins(engine.state).values() for one in each]
     activity = any(not (a.clause.rule.background or a.clause.reflexive) for a in (*play.active(), *others))
-    assert engine.read(policy.slot_of["core:activity"].index) == activity, "core:activity lies"
+    assert engine.read(policy.slot_of["core:activity"].index) == activity, "core:activity has the wrong value"
     waits = (*engine.state.waiting, *engine.state.alternatives)
     pressure = any(not a.clause.reflexive for a in waits)
-    assert engine.read(policy.slot_of["core:pressure"].index) == pressure, "core:pressure lies"
+    assert engine.read(policy.slot_of["core:pressure"].index) == pressure, "core:pressure has the wrong value"
     for waiter in engine.state.gated:
         assert not all(g.predicate in PREDICATES.values() and _holds(engine, s, g) for s, g in waiter.clause.guards)
 
@@ -252,9 +263,9 @@ def _holds(engine: Any, slot: Any, guard: Any) -> bool:
 
 
 def empty(play: Play) -> None:
-    """Assert that nothing is left (L23)."""
+    """Assert that the engine holds no object of a play any more (L23)."""
     engine = play.engine
-    assert not engine.state.running, f"{engine.state.running} run"
+    assert not engine.state.running, f"{engine.state.running} still run"
     for name in (
         "active",
         "live",
@@ -280,7 +291,7 @@ def empty(play: Play) -> None:
         "errors",
         "out",
     ):
-        assert not getattr(engine.state, name), f"{name}: {getattr(engine.state, name)}"
+        assert not getattr(engine.state, name), f"{name} is not empty: {getattr(engine.state, name)}"
     assert engine.state.free.is_empty
     assert not engine.parts.agenda.queue.line
     assert not engine.parts.agenda.places

@@ -10,7 +10,7 @@ from properties.worlds import Act, Op, RuleOf, SignalOf, SlotOf, Want, World
 
 
 def pair_world_of(seed: int) -> World:
-    """Return the world of a seed. A world that does not compile gives way to the next."""
+    """Return the world of a seed: the first random world that compiles."""
     chance = random.Random(seed)
     while not compiles(world := _world(chance)):
         pass
@@ -29,7 +29,7 @@ def _world(chance: random.Random) -> World:
         signals, slots = signals[:3], ["v0"]
         rules = [replace(rule, emits=(), acts=(_act(chance, ()),)) for rule in (pair, *rules[:2])]
         writes = ("v0",) if chance.random() < 0.7 else ()
-        alike = chance.random() < 0.4  # all of them are pairs with the same first signal
+        alike = chance.random() < 0.4  # all rules wait for pairs with the same first signal
         rules = [
             replace(rule, writes=writes, when=((Want("s0"), Want(chance.choice(signals[1:]))),) if alike else rule.when)
             for rule in rules

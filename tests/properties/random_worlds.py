@@ -1,4 +1,4 @@
-"""Random worlds from a seed. Unlike Hypothesis' examples, they take almost no time, so there can be thousands."""
+"""Random worlds from a seed. Making one is much faster than an example of Hypothesis, so a test can play thousands."""
 
 from __future__ import annotations
 
@@ -15,7 +15,7 @@ class Maker:
     def __init__(self, seed: int) -> None:
         self.dice = random.Random(seed)
         self.plain = seed // 100 % 4 == 3  # conditions without ages or predicates
-        self.grid = self.dice.random() < 0.4  # many events at one time, or all events at different times
+        self.grid = self.dice.random() < 0.4  # if true, many events come at the same time
         self.signals: list[str] = []
         self.heard: list[str] = []
         self.slots: list[SlotOf] = []
@@ -108,7 +108,7 @@ class Maker:
         where = self.dice.choice(["odd", "odd", "odd", "never"]) if self.chance(0.2) else ""
         detached = self.chance(0.25)
         if detached and high == low:
-            high += 1.0  # else it can be looked at for no time at all
+            high += 1.0  # otherwise, the constraint could hold a spike only for an instant
         return Want(signal, low, high, detached, where)
 
     def condition(self, heard: list[str]) -> tuple[Any, ...]:

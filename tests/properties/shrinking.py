@@ -101,7 +101,7 @@ def keeps_to_its_word(rule: RuleOf, slots: tuple[SlotOf, ...]) -> bool:
 
 
 def compiles(world: World) -> bool:
-    """Return whether a world's policy has no fault, and its rules do what they declare."""
+    """Return whether a world's policy has no fault, and its rules write and emit only what they declare."""
     adds = [op[1] for _, op in world.inputs if op[0] == "add"]
     if not all(keeps_to_its_word(rule, world.slots) for rule in (*world.rules, *adds)):
         return False

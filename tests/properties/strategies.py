@@ -1,4 +1,4 @@
-"""Random worlds: small policies full of collisions, with many inputs at once."""
+"""Hypothesis strategies for random worlds: small policies with many conflicts, and many simultaneous inputs."""
 
 from __future__ import annotations
 
@@ -14,15 +14,17 @@ from ravestate.errors import DeclarationErrors
 __all__ = ["worlds"]
 
 
-@lru_cache(maxsize=None, typed=True)  # Hypothesis checks each new strategy, which takes a third of the time
+@lru_cache(
+    maxsize=None, typed=True
+)  # Hypothesis checks each new strategy; without a cache, this takes a third of the time
 def pick(*values: Any) -> st.SearchStrategy[Any]:
-    """Return one of some values."""
+    """Return a strategy for one of these values."""
     return st.sampled_from(values)
 
 
 @lru_cache(maxsize=None, typed=True)
 def just(value: Any) -> st.SearchStrategy[Any]:
-    """Return a value."""
+    """Return a strategy for this value."""
     return st.just(value)
 
 
@@ -46,7 +48,7 @@ SLOTS = st.builds(
 
 
 def own_signals(slots: tuple[SlotOf, ...]) -> list[str]:
-    """Return the names of the signals of slots."""
+    """Return the names of the signals of these slots."""
     kinds = {
         "value": ("changed",),
         "flag": ("changed", "true", "false"),
@@ -57,7 +59,7 @@ def own_signals(slots: tuple[SlotOf, ...]) -> list[str]:
 
 @cache
 def writes(slots: tuple[SlotOf, ...], names: tuple[str, ...]) -> tuple[st.SearchStrategy[Op], ...]:
-    """Return ways to write the slots of these names."""
+    """Return strategies for operations that write the slots with these names."""
     found: list[st.SearchStrategy[Op]] = []
     for name in names:
         kind = slots[int(name[1:])].kind
@@ -129,7 +131,7 @@ def rules(draw: st.DrawFn, signals: list[str], world: World, emitted: list[str],
     if core and draw(pick(False, False, False, True)):
         flags = ["core:activity:true", "core:activity:false", "core:pressure:true", "core:pressure:false"]
         heard = [*signals, *flags, "core:error", "core:startup"]
-        background = True  # otherwise its own hold on the flag's spike would change the flag
+        background = True  # otherwise, the rule would change the flag by holding a spike of it
     names = [f"v{n}" for n in range(len(world.slots))]
     written = draw(st.lists(pick(*names), unique=True, max_size=2)) if names else []
     emits = draw(st.lists(pick(*emitted), unique=True, max_size=2)) if emitted else []

@@ -1,4 +1,4 @@
-"""Once all rules have settled and all spikes are too old, no live objects are left over (L23)."""
+"""Once all rules have settled and all spikes are too old, no live object is left (L23)."""
 
 from __future__ import annotations
 
@@ -33,7 +33,7 @@ def forget(play: Play) -> None:
         kept.clear()  # type: ignore[attr-defined]  # all are lists
 
 
-def test_a_burst_of_ten_thousand_spikes_is_handled_once_each_and_leaves_nothing() -> None:
+def test_each_spike_of_a_burst_of_ten_thousand_is_handled_once_and_leaves_nothing() -> None:
     world = World(
         (SignalOf(limit=20_000), SignalOf(limit=20_000)),
         (SlotOf(),),
@@ -54,12 +54,12 @@ def test_a_burst_of_ten_thousand_spikes_is_handled_once_each_and_leaves_nothing(
     assert count() == before
     empty(play)
     assert play.engine.state.dropped == {}
-    assert not NOTHING and not NO_NUMBERS  # what all engines share stays empty
+    assert not NOTHING and not NO_NUMBERS  # the table that all engines share stays empty
 
 
 @settings(max_examples=15)
 @given(worlds(ageless=False))
-def test_a_random_run_leaves_nothing(world: World) -> None:
+def test_a_random_play_leaves_nothing(world: World) -> None:
     before = count()
     play = Play(world)
     for _ in range(5):

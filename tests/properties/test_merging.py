@@ -1,4 +1,4 @@
-"""Random worlds with merging groups: whatever the order of merging, no rule misses a spike (L11, L12)."""
+"""Random worlds with merging groups: no rule misses a spike, in whatever order the groups merge (L11, L12)."""
 
 from __future__ import annotations
 
@@ -13,7 +13,7 @@ GAPS = st.sampled_from([0.0, 0.0, 0.5])
 
 @st.composite
 def merging_worlds(draw: st.DrawFn) -> World:
-    """Generate worlds in which each signal occurs once: some inputs, and rules with one signal of their own each."""
+    """Generate worlds in which each signal occurs once. Each rule raises its own signal."""
     inputs = [f"s{n}" for n in range(draw(st.integers(2, 4)))]
     known, signals, slots = list(inputs), [SignalOf() for _ in inputs], list[SlotOf]()
     rules: list[RuleOf] = []
@@ -38,6 +38,6 @@ def merging_worlds(draw: st.DrawFn) -> World:
 
 
 @given(merging_worlds())
-def test_every_rule_runs_once_whatever_the_order_in_which_its_groups_merge(world: World) -> None:
+def test_every_rule_runs_once_in_whatever_order_its_groups_merge(world: World) -> None:
     play = Play(world, before=bounded, started=Exclusion()).play()
     assert play.calls == {f"m:r{number}": 1 for number in range(len(world.rules))}

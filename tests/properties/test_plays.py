@@ -1,4 +1,4 @@
-"""Random worlds: whatever the policy and whatever happens, the laws hold (L10, L15, L16, L18, L23)."""
+"""Random worlds: the laws hold for any policy and any inputs (L10, L15, L16, L18, L23)."""
 
 from __future__ import annotations
 
@@ -16,24 +16,24 @@ def test_rules_that_exclude_each_other_never_both_finish_for_one_cause(world: Wo
 
 
 @given(worlds(adds=True))
-def test_every_wait_has_a_reason_and_an_end(world: World) -> None:
-    """The reason is a taken slot or a viable rival; a rival that only patience bounds ends within it."""
+def test_every_wait_has_a_reason_and_ends(world: World) -> None:
+    """The reason is a taken slot or a viable rival. If only patience bounds the wait, it ends within the patience."""
     play = Play(world, before=bounded).play()
     bounded(play)
 
 
 @given(worlds(ageless=False))
-def test_after_enough_time_nothing_is_left(world: World) -> None:
+def test_after_enough_time_no_engine_object_is_left(world: World) -> None:
     play = Play(world).play()
     play.settle(1000.0)
     empty(play)
 
 
 @given(worlds())
-def test_after_a_wipe_of_everything_nothing_is_left(world: World) -> None:
-    """Not even a spike without a greatest age."""
+def test_after_all_signals_are_wiped_no_engine_object_is_left(world: World) -> None:
+    """Even a spike that never grows too old (``max_age=None``) is gone."""
     play = Play(world).play()
-    for _ in range(50):  # the end of activity, or a cancelled run, may raise signals again
+    for _ in range(50):  # the end of activity and the clean-up of a cancelled run can raise signals again
         play.wipe_all()
         play.settle(1000.0)
         if not play.engine.state.active and not play.engine.state.live:

@@ -1,6 +1,6 @@
-"""Random worlds: the engine does what the interpreter of the laws does, effect for effect and at the same times.
+"""Random worlds: the engine and the interpreter of the laws have the same effects at the same times.
 
-`make fuzz` plays fresh seeds; here the same seeds are played each time.
+These tests play the same seeds each time. `make fuzz` plays new seeds.
 """
 
 from __future__ import annotations
@@ -23,25 +23,25 @@ PARTS = 20
 
 
 @pytest.mark.parametrize("part", range(PARTS))
-def test_the_engine_keeps_to_the_laws(part: int) -> None:
+def test_the_engine_follows_the_laws(part: int) -> None:
     for seed in range(part, SEEDS, PARTS):
         check(varied(world_of(seed), seed), seed)
 
 
 @pytest.mark.parametrize("part", range(PARTS))
-def test_the_engine_keeps_to_the_laws_where_pairs_compete(part: int) -> None:
+def test_the_engine_follows_the_laws_where_pairs_compete(part: int) -> None:
     for seed in range(part, PAIR_SEEDS, PARTS):
         check(varied(pair_world_of(seed), seed), seed)
 
 
 @pytest.mark.parametrize("part", range(PARTS))
-def test_the_engine_keeps_to_the_laws_where_many_rules_hear_one_input(part: int) -> None:
+def test_the_engine_follows_the_laws_where_many_rules_hear_one_input(part: int) -> None:
     for seed in range(part, CROWD_SEEDS, PARTS):
         check(varied(crowd_world_of(seed), seed), seed)
 
 
 @pytest.mark.parametrize("part", range(PARTS))
-def test_a_tracer_changes_nothing_and_journals_replay_with_and_without(part: int) -> None:
+def test_a_tracer_changes_nothing_and_journals_replay_with_and_without_a_tracer(part: int) -> None:
     for seed in range(part, OBSERVED_SEEDS, PARTS):
         world = any_world_of(seed)
         if observation(world):
@@ -49,7 +49,7 @@ def test_a_tracer_changes_nothing_and_journals_replay_with_and_without(part: int
             pytest.fail(f"seed {seed}: {least!r}\n{observation(least)}")
 
 
-def test_a_rule_that_recovers_in_the_moment_of_another_event_meets_it() -> None:
+def test_a_rule_that_recovers_at_the_moment_of_another_event_takes_part_in_it() -> None:
     check(crowd_world_of(901_469), 901_469)
 
 
@@ -65,7 +65,7 @@ def test_a_tracer_does_not_change_the_numbers_of_runs(order: str) -> None:
 
 
 def test_an_activation_that_begins_to_wait_for_a_run_is_no_longer_in_a_stalemate() -> None:
-    """Once `r1` runs for the first s0, its activation for the second waits for that run, and `r3` and `r0` for it."""
+    """Once `r1` runs for the first s0, its activation for the second s0 waits for that run. `r3` and `r0` wait too."""
     both = (Want("s0"), Want("s2"))
     rules = (
         RuleOf(when=((Want("s0"),),), writes=("v0",)),
@@ -78,7 +78,7 @@ def test_an_activation_that_begins_to_wait_for_a_run_is_no_longer_in_a_stalemate
 
 
 def test_a_waiting_activation_is_reconsidered_as_soon_as_a_rival_gives_up() -> None:
-    """At 0.5 s `r0` lets the patience of `r3` run out, so `r2` may run, although it asked earlier in that instant (L16)."""
+    """At 0.5 s, the patience of `r3` for `r0` ends. Then `r2` must run, although it asked at 0.5 s before (L16)."""
     half = Act(seconds=0.5)
     rules = (
         RuleOf(when=((Want("s1"), Want("s0")),), writes=("v0",), weight=0.5),
@@ -91,7 +91,7 @@ def test_a_waiting_activation_is_reconsidered_as_soon_as_a_rival_gives_up() -> N
 
 
 @pytest.mark.parametrize("order", ["0011", "1100", "110001", "0101"])
-def test_an_added_rule_that_relates_two_signals_affects_pairs_of_earlier_spikes_as_the_laws_say(order: str) -> None:
+def test_an_added_rule_that_relates_two_signals_also_affects_pairs_of_earlier_spikes(order: str) -> None:
     """The rule is added after the spikes of one instant, before any pair of these spikes has run (L12)."""
     for cause, effect in ("s0", "s1"), ("s1", "s0"):
         added = RuleOf(when=((Want(cause),),), emits=(effect,))

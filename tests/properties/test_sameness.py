@@ -1,6 +1,6 @@
-"""Random worlds: observers, repetitions and idle calls change nothing (L24, L25).
+"""Random worlds: observers, repetitions and unnecessary calls change nothing (L24, L25).
 
-That a tracer changes nothing, and that journals replay, is in `test_same_as_the_laws.py`.
+`test_same_as_the_laws.py` has the tests about tracers and journals.
 """
 
 from __future__ import annotations
@@ -43,7 +43,7 @@ def test_a_spurious_advance_changes_nothing(world: World, parts: list[float]) ->
 
 
 @given(worlds())
-def test_looking_changes_nothing(world: World) -> None:
+def test_a_snapshot_or_an_explanation_changes_nothing(world: World) -> None:
     assert Play(world, before=lambda play: void(still(play))).play().heard == Play(world).play().heard
 
 
@@ -55,7 +55,7 @@ def test_the_same_inputs_give_the_same_effects_and_records(world: World) -> None
 
 
 @given(worlds(), st.integers(0, 3))
-def test_a_rule_that_hears_nothing_changes_nothing(world: World, steps: int) -> None:
+def test_an_added_rule_that_never_runs_changes_nothing(world: World, steps: int) -> None:
     """The rule is added to a live engine. One more rule changes all utilities (L9), so the test restores them."""
     plain = Play(world)
     changed = Play(world)
@@ -78,7 +78,7 @@ def test_a_rule_that_hears_nothing_changes_nothing(world: World, steps: int) -> 
     assert changed.play().heard == plain.play().heard
 
 
-def test_the_same_effects_under_any_seed_of_hashes() -> None:
+def test_the_seed_of_hashes_does_not_affect_the_effects() -> None:
     batch: list[World] = []
 
     @settings(max_examples=60, phases=[Phase.generate], suppress_health_check=list(HealthCheck))

@@ -10,7 +10,7 @@ from properties.worlds import MODULES, Act, Clause, Gate, Op, RuleOf, Want, Worl
 
 
 def varied(world: World, seed: int) -> World:
-    """Return a variation of a world, or the world itself. A variation that does not compile is left out."""
+    """Return a world after random variations, or without them. A variation that does not compile is left out."""
     chance = random.Random(f"variation {seed}")
     for variation in (_doubtful, _scattered, _extended):
         if chance.random() < 0.3 and compiles(other := variation(world, chance)):
@@ -24,7 +24,7 @@ def _scattered(world: World, chance: random.Random) -> World:
 
 
 def _extended(world: World, chance: random.Random) -> World:
-    """Add rules, some of them beside live spikes of their signals, or in the instant of these spikes."""
+    """Add rules at run time. Spikes of their signals can be live, or even be born in the same instant."""
     signals = [f"s{n}" for n in range(len(world.signals))]
     inputs = list(world.inputs)
     for _ in range(chance.randint(1, 2) if len(signals) > 1 else 0):
@@ -39,7 +39,7 @@ def _pair(world: World, chance: random.Random, signals: list[str]) -> RuleOf:
 
 
 def _added(world: World, chance: random.Random, signals: list[str]) -> RuleOf:
-    """Return a rule that may raise signals, and may hear signals of some age or payload only."""
+    """Return a rule with random clauses, ages and predicates, which can raise signals."""
     emits = tuple(chance.sample(signals, chance.choice((0, 1, 1, 2))))
     clauses: list[Clause] = []
     for _ in range(chance.choice((1, 1, 1, 2))):
@@ -60,7 +60,7 @@ def _slot(world: World, chance: random.Random) -> tuple[str, ...]:
 
 
 def _doubtful(world: World, chance: random.Random) -> World:
-    """Give conditions predicates that raise."""
+    """Give conditions predicates that can raise an error."""
 
     def condition(clauses: tuple[Clause, ...]) -> tuple[Clause, ...]:
         return tuple(tuple(part(one) for one in clause) for clause in clauses)

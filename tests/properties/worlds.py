@@ -1,8 +1,8 @@
-"""Worlds: a policy, the work of its rules, and its inputs, as plain data that prints as the code that makes it.
+"""Worlds: a policy, the work of its rules, and its inputs. The repr of a world is the code that makes it.
 
-`compiled` makes the policy. `Play` plays the world on a bare engine in virtual time, like the runtime: the first steps
-of a rule function are performed at once, later ones at their time. A subprocess imports this file, so it does without
-Hypothesis.
+`compiled` makes the policy. `Play` plays the world on a bare engine in virtual time. Like the runtime, it performs the
+first steps of a rule function immediately, and later steps at their time. A subprocess imports this file, so the file
+does not import Hypothesis.
 """
 
 from __future__ import annotations
@@ -40,10 +40,10 @@ MODULES = ("m", "m1", "m2")
 """The names of the modules of a world."""
 
 BUDGET = 8
-"""Runs after which a rule retires, so that every loop ends."""
+"""The number of runs after which a rule retires, so that every loop ends."""
 
 STEPS = 5_000
-"""Moments of a play after which it counts as endless."""
+"""The number of moments after which a play counts as endless."""
 
 
 def odd(value: Any) -> bool:
@@ -57,14 +57,14 @@ def never(_: Any) -> bool:
 
 
 def fussy(value: Any) -> bool:
-    """Return true; raise on 2."""
+    """Return true, but raise an error on 2."""
     if value == 2:
         raise ValueError("two")
     return True
 
 
 def choosy(value: Any) -> bool:
-    """Return whether a value is true; raise on 1."""
+    """Return whether a value is truthy, but raise an error on 1."""
     if value == 1:
         raise KeyError("one")
     return bool(value)
@@ -73,12 +73,12 @@ def choosy(value: Any) -> bool:
 PREDICATES: dict[str, Callable[[Any], bool]] = {"odd": odd, "never": never, "fussy": fussy, "choosy": choosy}
 
 Op = tuple[Any, ...]
-"""(``emit``, signal, payload), (``write``, slot, value), (``store``, slot, key, item), (``discard``, slot, key),
+"""One of (``emit``, signal, payload), (``write``, slot, value), (``store``, slot, key, item), (``discard``, slot, key),
 (``wipe``, signal), (``start``,), (``stop``,) or (``add``, rule)."""
 
 
 class Brief:
-    """A record that prints as the call that makes it, without defaults."""
+    """A record. Its repr is the call that makes it, without default values."""
 
     def __repr__(self) -> str:
         told: list[str] = []
@@ -114,7 +114,7 @@ Clause = tuple[Want | Gate, ...]
 
 @dataclass(frozen=True, repr=False)
 class Act(Brief):
-    """The work of a rule's function: steps, each after a few seconds, then an end."""
+    """The work of a rule's function: steps, each with a delay (seconds), and then an end."""
 
     steps: tuple[tuple[float, Op], ...] = ()
     seconds: float = 0.0
@@ -128,7 +128,7 @@ class Act(Brief):
 
 @dataclass(frozen=True, repr=False)
 class RuleOf(Brief):
-    """A rule, and the work of its function at the first call, the second, ..."""
+    """A rule, and the work of its function at each call. After the last item of `acts`, the first one follows."""
 
     when: tuple[Clause, ...]
     writes: tuple[str, ...] = ()
@@ -167,9 +167,9 @@ class SlotOf(Brief):
 
 @dataclass(frozen=True, repr=False)
 class World(Brief):
-    """Signals ``s0, s1, ...``, slots ``v0, v1, ...``, rules ``r0, r1, ...``; and inputs, each after a few seconds.
+    """Signals ``s0, s1, ...``, slots ``v0, v1, ...``, rules ``r0, r1, ...``, and inputs, each with a delay (seconds).
 
-    The modules ``m, m1, m2, ...`` get them in turn.
+    The modules ``m, m1, m2, ...`` declare these signals, slots and rules in turn.
     """
 
     signals: tuple[SignalOf, ...] = ()
@@ -192,7 +192,7 @@ class World(Brief):
 
 
 class Names:
-    """The signals and slots of a world's module by name."""
+    """The signals and slots of a world's modules by name."""
 
     def __init__(self, world: World) -> None:
         self.world = world
@@ -225,7 +225,7 @@ class Names:
         return self.modules[self.world.home(name)]
 
     def extended(self, policy: Policy, spec: RuleOf, name: str) -> Policy | None:
-        """Return a policy with one more rule, or None if the rule does not fit; plays of the same world share it."""
+        """Return a policy with one more rule, or None if the rule does not fit. Plays of the same world share it."""
         if (policy, spec) not in self.added:
             try:
                 self.added[policy, spec] = policy.with_rule(rule_of(self, spec, name))
@@ -254,7 +254,7 @@ def rule_of(names: Names, spec: RuleOf, name: str) -> rs.Rule[Any, Any]:
     """Declare a rule."""
 
     async def coroutine(ctx: Any) -> None:
-        raise NotImplementedError  # a bare engine calls nothing
+        raise NotImplementedError  # a bare engine does not call rule functions
 
     def plain(ctx: Any) -> None:
         raise NotImplementedError
@@ -277,7 +277,7 @@ def rule_of(names: Names, spec: RuleOf, name: str) -> rs.Rule[Any, Any]:
 
 
 def compiled(world: World) -> tuple[Names, Policy]:
-    """Compile a world's module; with the returned `Names` more rules can be declared later."""
+    """Compile a world's modules. The returned `Names` can later declare more rules."""
     names = Names(world)
     for number, rule in enumerate(world.rules):
         rule_of(names, rule, f"r{number}")
@@ -289,9 +289,9 @@ class Play:
     """A play of a world.
 
     Attributes:
-        heard: The effects, in words, with the time (seconds) of each.
-        taken: The effects of each time that they were asked for.
-        journal: The events, and when effects were taken, each with its time (seconds).
+        heard: The events and the effects as text, each with its time (seconds).
+        taken: The effects that each call of `take` got.
+        journal: The events and the calls of `take`, each with its time (seconds).
     """
 
     world: World
@@ -299,13 +299,13 @@ class Play:
     names: Names | None = None
     traced: bool = False
     before: Callable[[Play], None] | None = None
-    """A callback before time passes: `self.engine` is quiet, and nothing happens until `self.next_time()`."""
+    """A callback before time passes. The engine has settled, and nothing happens until `self.next_time()`."""
     started: Callable[[Play, Effect], None] | None = None
     """A callback with each effect of a batch, before the first of them is performed."""
     budget: int = BUDGET
-    """Calls of a rule after which it retires."""
+    """The number of calls after which a rule retires."""
     machine: Callable[..., Any] = Counted
-    """The engine, or an interpreter in its place."""
+    """The class of the engine, or of an interpreter in its place."""
     now: float = 0.0
     heard: list[str] = field(default_factory=list)
     taken: list[list[Effect]] = field(default_factory=list)
@@ -320,8 +320,8 @@ class Play:
             self.engine.tracer = lambda record: self.trace.append(repr(record))
         self.specs = {self.world.full(f"r{number}"): rule for number, rule in enumerate(self.world.rules)}
         self.calls: dict[str, int] = {}
-        self.acts: dict[int, tuple[str, Act]] = {}  # of the runs that are alive
-        self.todo: list[tuple[float, int, int, Op]] = []  # time, number, run, what
+        self.acts: dict[int, tuple[str, Act]] = {}  # by run; only runs that have not ended
+        self.todo: list[tuple[float, int, int, Op]] = []  # time, number, run, operation
         self.count = 0
         time = 0.0
         for seconds, op in self.world.inputs:
@@ -335,7 +335,7 @@ class Play:
         for _ in range(STEPS + len(self.todo)):
             if not self.step():
                 return self
-        raise Endless(f"there is no end to it at {self.now} s")
+        raise Endless(f"the play does not end; it has come to {self.now} s")
 
     def next_time(self) -> float | None:
         """Return when something happens next (seconds)."""
@@ -373,7 +373,7 @@ class Play:
                 break
             self.step()
         else:
-            raise Endless(f"there is no end to it at {self.now} s")
+            raise Endless(f"the play does not end; it has come to {self.now} s")
         self.now = end
         self.engine.advance(end)
         self.pump()
@@ -396,9 +396,9 @@ class Play:
         self.engine.receive(event, self.now)
 
     def do(self, run: int, op: Op) -> None:
-        """Do one step, of a run (by number) or from outside (0)."""
+        """Do one step of the run with this number, or of code outside (0)."""
         if run and run not in self.acts:
-            return  # it has ended, or was given up
+            return  # the run has ended, or was cancelled
         by = run or None
         match op:
             case ("emit", name, payload):
@@ -422,7 +422,7 @@ class Play:
                 name = f"r{len(self.engine.policy.declared)}"
                 more = self.names.extended(self.engine.policy, spec, name)
                 if more is None:
-                    return  # it does not fit what is there
+                    return  # the rule does not fit the policy
                 self.specs[self.world.full(name)] = spec
                 self.receive(events.AddRule(more))
             case ("finish", kind, reason):
@@ -452,7 +452,7 @@ class Play:
                     assert not isinstance(effect, Ended) or effect.run not in self.acts
 
     def take(self) -> list[Effect]:
-        """Take the effects, and note this in the journal."""
+        """Take the effects, and record this in the journal."""
         self.journal.append((self.now, Taken()))
         effects = self.engine.effects()
         self.taken.append(effects)
@@ -466,7 +466,7 @@ class Play:
         run = effect.run
         self.acts[run] = (name, act)
         time = self.now
-        suspended = spec.thread  # a thread reports later, even if at once
+        suspended = spec.thread  # a thread always reports later, even without a delay
         for seconds, op in act.steps:
             suspended = suspended or seconds > 0
             time += seconds
@@ -483,7 +483,7 @@ class Play:
     def cancel(self, effect: Cancel) -> None:
         held = self.acts.get(effect.run)
         if held is None:
-            return  # it has ended in the meantime
+            return  # the run has ended in the meantime
         name, act = held
         if self.specs[name].thread:
             self.finish(effect.run, "done", effect.reason)

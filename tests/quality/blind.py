@@ -1,6 +1,6 @@
-"""The blind sets of the folder `blind`: written without sight of code and examples, and never used for tuning.
+"""Measure the blind sets. Their authors did not see code or examples, and no module is tuned on them.
 
-`make quality` prints their shares. It never prints a sentence: engineers who improve a module must not see them.
+`make quality` prints their shares. It never prints a sentence, because engineers must not see them.
 """
 
 from __future__ import annotations
@@ -15,19 +15,19 @@ from ravestate.language.matcher import bundled_matcher
 
 HERE = Path(__file__).parent / "blind"
 REMARKS = ("distress", "insult", "grief", "thanks", "acknowledgement", "contradiction")
-"""Labels of ``about_agent`` that no topic of the agent's life stands for, but an act or a feeling of the user."""
+"""Labels of ``about_agent`` that do not mean a topic of the agent's life, but an act or a feeling of the user."""
 _PRONOUNS = ("she", "he", "they", "her", "him", "them", "it", "that")
 _SAD = ("grief", "illness", "sadness", "loneliness", "worry", "failure")
 
 
 def rows(name: str) -> list[list[str]]:
-    """Return the lines of a set, split at tabs."""
+    """Return the rows of a set, each as the list of its cells."""
     lines = (HERE / f"{name}.tsv").read_text(encoding="utf-8").splitlines()
     return [line.split("\t") for line in lines if line.strip() and not line.startswith("#")]
 
 
 def labelled(name: str, style: str = "") -> list[tuple[str, str]]:
-    """Return the sentences of a set with one label each; of one style (the third column) if it is given."""
+    """Return the sentences of a set, each with its label. If `style` is given, return only rows of this style."""
     return [(row[0], row[1]) for row in rows(name) if not style or row[2] == style]
 
 
@@ -49,7 +49,7 @@ def _measured_triples(name: str) -> Result:
 
 
 def about_agent(text: str) -> str:
-    """Return the topic that a text asks for, or the act of the user's that the agent answers."""
+    """Return the topic that a text asks for, or the user's act to which the agent replies."""
     for matcher in ("acts", "feelings"):
         bundled_matcher(matcher).load()
     topic = skills.agentqa_asks(text)
@@ -71,21 +71,21 @@ def _labels(name: str, see: Callable[[str], str], cases: list[tuple[str, str]]) 
 
 
 def facts(kinds: Sequence[str] = (), name: str = "facts") -> list[tuple[str, str]]:
-    """Return the sentences of a set with the facts that may be stored, of some kinds or all."""
+    """Return the sentences of a set with the facts to store. If `kinds` are given, return only rows of these kinds."""
     return [(row[0], row[1]) for row in rows(name) if not kinds or row[2] in kinds]
 
 
 TRICKY = ("denied", "past", "hearsay", "conditional", "nothing", "question")
-"""Kinds of sentences from which something wrong is easily stored."""
+"""Kinds of sentences from which a module easily stores a wrong fact."""
 SINGLE = (
     "name", "home", "origin", "birthplace", "childhood", "age", "occupation", "employer", "subject", "university",
 )  # fmt: skip
-"""Topics with one value, as those that begin with ``favourite``: a new value replaces the old one."""
+"""Topics with only one value: a new value replaces the old value. ``favourite ...`` topics do the same."""
 _KNOWN = re.compile(r"\[knows ([^]=]+)=([^]]*)\] ")
 
 
 def stored(text: str) -> frozenset[str]:
-    """Return the facts that are stored for a text, in lower case; it may begin with its situation in brackets."""
+    """Return the facts that are stored for a text, in lower case. The text can begin with its situation in brackets."""
     meaning = skills.meaning_of(text)
     if meaning.kind not in ("told", "corrected"):
         return frozenset()
@@ -93,7 +93,7 @@ def stored(text: str) -> frozenset[str]:
     told += [
         f"{'user' if one.subject.lower() == 'i' else one.subject} / {one.verb} / {one.object}" for one in meaning.free
     ]
-    if known := _KNOWN.match(text):  # a topic that is denied as a whole loses the value that is known
+    if known := _KNOWN.match(text):  # denying a topic without a value removes its known value
         told = [f"{fact}={known[2]}" if fact == f"not {known[1]}" else fact for fact in told]
     return _facts(";".join(told))
 
@@ -104,9 +104,9 @@ def _facts(label: str) -> frozenset[str]:
 
 
 def _wanted(label: str) -> tuple[frozenset[str], frozenset[str]]:
-    """Return the facts that must be stored, and those that may be: true, but not worth a demand.
+    """Return the facts that must be stored, and the facts that may be stored.
 
-    These have a ``+``, or deny the old value of a topic with one value, whose new value replaces it.
+    A fact of the second kind has a ``+``, or denies an old value that a new value replaces anyway.
     """
     named = _facts(label)
     told = {fact.partition("=")[0] for fact in named}
@@ -120,21 +120,21 @@ def _replaced(fact: str, told: set[str]) -> bool:
 
 
 def fits(label: str, seen: frozenset[str]) -> bool:
-    """Return whether the facts are all that must be stored, and none that may not."""
+    """Return whether `seen` has all facts that must be stored, and no fact that must not be stored."""
     must, _ = _wanted(label)
     return _harmless(label, seen) and all(any(_fits(one, other) for other in seen) for one in must)
 
 
 def _harmless(label: str, seen: frozenset[str]) -> bool:
-    """Return whether no fact is one that may not be stored."""
+    """Return whether `seen` has no fact that must not be stored."""
     must, may = _wanted(label)
     return all(any(_fits(one, other) for one in must | may) for other in seen)
 
 
 def _fits(expected: str, seen: str) -> bool:
-    """Return whether a fact is the one expected.
+    """Return whether a fact is the expected fact.
 
-    ``a~b`` allows two wordings, ``a|b`` names two values, and ``fact or fact`` says the same in two ways.
+    ``a~b`` allows two wordings of a value, ``a|b`` are two values, and ``fact or fact`` are two ways to store a fact.
     """
     return any(_says(way, seen) for way in expected.split(" or "))
 
@@ -160,15 +160,15 @@ def _ways(wordings: str) -> set[str]:
 
 
 def _plain(words: str) -> str:
-    """Return words without the determiner before them."""
+    """Return a phrase without its determiner."""
     return re.sub(r"^(?:an?|the|my|our|this) (?=\S)", "", words.strip())
 
 
 def measured_facts(name: str = "facts", *, show: bool = False) -> list[Result]:
-    """Measure what is stored: all right, and nothing wrong in tricky sentences.
+    """Measure how often all facts are stored rightly, and how often tricky sentences cause no wrong fact.
 
     Args:
-        name: The set, which may be a development set.
+        name: The name of the set. It can also be a development set.
         show: Whether the results list the misses. The sentences of a blind set stay hidden.
     """
     cases, tricky = facts((), name), facts(TRICKY, name)
@@ -199,7 +199,7 @@ def measured_feelings() -> list[Result]:
 
 
 def measured_smalltalk() -> list[Result]:
-    """Measure how often the listener takes up what was said, by its word or by a pronoun for it."""
+    """Measure how often the listener's answer refers to the user's topic, by its word or by a pronoun."""
     cases = [row for row in rows("smalltalk") if row[2] != NONE]
     modules.prepare(text for text, _, _ in cases)
     taken = 0

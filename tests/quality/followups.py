@@ -1,4 +1,4 @@
-"""Measure follow-up questions, in talks with nlp and genqa about a few small documents.
+"""Measure how genqa answers follow-up questions in conversations about a few small documents.
 
     python tests/quality/followups.py [FILE] [--misses]
 
@@ -29,7 +29,7 @@ FILES = (ROWS, HERE / "thread_station_rows.yaml", HERE / "thread_town_rows.yaml"
 
 
 def measure_followups(file: Path = ROWS, every: int = 1) -> Result:
-    """Run the talks of a file, each in a context of its own; with `every`, only each such talk."""
+    """Run every `every`-th conversation of a file, each in its own context."""
     content = read_yaml(file)
     outcomes = ("right", "answered right", "rightly silent", "wrongly silent", "wrong")
     counts: dict[str, int] = dict.fromkeys(outcomes, 0)
@@ -51,7 +51,7 @@ def measure_followups(file: Path = ROWS, every: int = 1) -> Result:
 
 
 def results() -> list[Result]:
-    """Measure the talks for development; `measure.py` prints them."""
+    """Measure the conversations for development. `measure.py` prints the results."""
     return [measure_followups(file) for file in FILES]
 
 

@@ -1,7 +1,7 @@
 """Measure the sets of sentences with which nlp, idle and emotion were developed.
 
 They show whether a change breaks sentences that worked. Only sets that were not used for tuning show how well the agent
-understands text. A change may lose some of these sentences as long as the floors in `test_language.py` hold.
+understands text. A change may lose some of these sentences if the floors in `test_language.py` still hold.
 """
 
 from __future__ import annotations
@@ -24,38 +24,38 @@ SETS = ("triples_rows", "typed_rows", *LABELLED)
 
 
 def acts_of(text: str) -> frozenset[str]:
-    """Return the user's acts, by the package `language`."""
+    """Return the user's acts that the package `language` finds in a text."""
     bundled_matcher("acts").load()
     return frozenset(acts(heard(text)))
 
 
 def acts_label(text: str) -> str:
-    """Return the label of the user's act, by the package `language`."""
+    """Return the user's acts that the package `language` finds in a text, as a label."""
     return "+".join(sorted(acts_of(text))) or "-"
 
 
 def intents(text: str) -> str:
-    """Return the intents of a text, by nlp."""
+    """Return the intents that nlp finds in a text, as a label."""
     bundled_matcher("acts").load()
     seen = modules._seen(text)
     return "+".join(intent.removeprefix("intent_") for intent in seen.acted) or "-"
 
 
 def answered(text: str) -> YesNo:
-    """By nlp, with the examples learnt."""
+    """Return the meaning that a loaded nlp finds in an answer."""
     bundled_matcher("answers").load()
     return yesno_of(text)
 
 
 def quiet(text: str) -> str:
-    """Return the label of a text, by idle: a request for quiet, a farewell, or neither."""
+    """Return how idle understands a text: as a request for quiet, a farewell, or neither."""
     heard = acts_of(text)
     return "quiet" if "quiet" in heard else "leave" if "farewell" in heard else "-"
 
 
 @cache
 def feelings(text: str) -> str:
-    """Return the feelings in a text, including sadness, by emotion."""
+    """Return the feelings that emotion finds in a text, including sadness."""
     return emotion.recognise(text, Settings().agent_names) or "-"
 
 
@@ -74,7 +74,7 @@ SEE: dict[str, Callable[[str], str]] = {
 
 
 def triples_of(notation: str) -> frozenset[tuple[str, str, str]]:
-    """Read triples: ``I live Hannover; My_sister sing _``."""
+    """Read triples in the notation ``I live Hannover; My_sister sing _``."""
     parts = [triple.split() for triple in notation.split(";") if triple.strip()]
     return frozenset((_part(subject), _part(verb), _part(thing)) for subject, verb, thing in parts)
 
@@ -88,12 +88,12 @@ def _same(triples: Iterable[tuple[str, str, str]]) -> Iterable[tuple[str, str, s
 
 
 def _in_lower_case(triples: Iterable[tuple[str, str, str]]) -> Iterable[tuple[str, str, str]]:
-    """Return triples in lower case: people type either case."""
+    """Return triples in lower case, because people type capitals or not."""
     return [(subject.lower(), predicate, thing.lower()) for subject, predicate, thing in triples]
 
 
 def typed() -> list[tuple[str, str]]:
-    """The messages as people type them, with their triples."""
+    """Return messages as people type them, with their triples."""
     return list(measure.read_yaml(measure.HERE / "typed_rows.yaml").items())
 
 
@@ -119,5 +119,5 @@ def measured(name: str) -> Result:
 
 
 def results() -> Iterable[Result]:
-    """Measure all sets; `measure.py` prints them."""
+    """Measure all sets. `measure.py` prints the results."""
     return map(measured, SETS)

@@ -1,4 +1,4 @@
-"""Measure how well the agent understands text: the sets of this folder, and the functions under test.
+"""Measure how well the agent understands text, on the sets of this folder.
 
     python tests/quality/measure.py MODULE... [--misses]
 
@@ -17,7 +17,7 @@ from typing import Any
 from ravestate.yaml_text import load_yaml
 
 HERE = Path(__file__).parent
-NONE = "-"  # the label of a sentence that the set's module must leave alone
+NONE = "-"  # the label of a sentence to which the module of the set must not react
 
 Triples = frozenset[tuple[str, str, str]]
 
@@ -91,7 +91,7 @@ def facts() -> list[Fact]:
     ]
 
 
-# ------------------------------------------------------------------------------------------- the measuring
+# ------------------------------------------------------------------------------------------- the measurements
 
 
 def measure_triples(see: Callable[[str], Iterable[Iterable[str]]], cases: list[tuple[str, Triples]]) -> Result:
@@ -126,7 +126,7 @@ def measure_labels(name: str, see: Callable[[str], str], cases: list[tuple[str, 
 
 
 def measure_facts(ask: Callable[[str], Reply | None], cases: list[Fact]) -> Result:
-    """Measure answers and silences. The last share refers to the certain answers only; the others refer to all questions."""
+    """Measure answers and silences. The last share is of the certain answers only; the others are of all questions."""
     counts = dict.fromkeys(("answered right", "rightly silent", "wrongly silent", "wrong, unsure", "wrong, sure"), 0)
     sure = 0
     misses: list[str] = []
@@ -148,7 +148,7 @@ def measure_facts(ask: Callable[[str], Reply | None], cases: list[Fact]) -> Resu
 
 
 def table(results: Iterable[Result]) -> str:
-    """Return the results as a table with one share a line."""
+    """Return the results as a table with one share per line."""
     lines = [f"{'set':<16} {'cases':>5}  {'':<22} {'share':>7}"]
     for result in results:
         for row, (what, share) in enumerate(result.shares.items()):
@@ -179,7 +179,7 @@ def main(argv: list[str] | None = None) -> int:
 
 
 def _pattern(answer: str) -> str:
-    """Return a pattern for whole words; a star at the end allows any ending of the word."""
+    """Return a pattern that matches whole words. A star at the end allows any ending of the word."""
     return rf"\b{re.escape(answer[:-1])}" if answer.endswith("*") else rf"\b{re.escape(answer)}\b"
 
 

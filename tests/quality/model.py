@@ -1,4 +1,4 @@
-"""Compare nlp with the help of a language model (the setting `nlp.model`) to nlp without it.
+"""Compare nlp with a language model (the setting `nlp.model`) and nlp without one.
 
     python -m quality.model MODEL [--base-url URL] [--most N]
 

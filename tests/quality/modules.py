@@ -1,4 +1,4 @@
-"""Functions that show how nlp understands a text, for the sets; and genqa on its own set."""
+"""Functions that show how nlp understands a text, and the measurement of genqa."""
 
 from __future__ import annotations
 
@@ -35,12 +35,12 @@ def _seen(text: str) -> Analysis:
 
 @cache
 def _analysed(text: str, learnt: tuple[bool, ...]) -> Analysis:
-    """Analyse a text once for all measures: the analysis depends on which matchers have learnt their examples."""
+    """Analyse a text once for all measurements. The analysis depends on `learnt`: which matchers are loaded."""
     return analyse(text, _Prepared(), Settings().agent_names)
 
 
 class _Prepared(Pipeline):
-    """The shared pipeline, with the trees of `prepare`."""
+    """The shared pipeline, which reuses the trees that `prepare` has made."""
 
     trees: ClassVar[dict[Normal, tuple[Tree, tuple[Entity, ...]]]] = {}
 
@@ -53,7 +53,7 @@ class _Prepared(Pipeline):
 
 
 def prepare(texts: Iterable[str]) -> None:
-    """Parse the sentences of a set at once: the pipeline makes batches of waiting texts, which take a third of the time."""
+    """Parse all sentences of a set. The pipeline makes batches of waiting texts, which takes a third of the time."""
     normals = [pipeline("").normalise(text, Settings().agent_names) for text in texts]
     with ThreadPoolExecutor(2 * TOGETHER) as pool:
         _Prepared.trees.update(zip(normals, pool.map(pipeline("").read, normals), strict=True))
@@ -61,13 +61,13 @@ def prepare(texts: Iterable[str]) -> None:
 
 @cache
 def _read(text: str) -> tuple[Tree, tuple[Entity, ...]]:
-    """Parse a text, without the rest of its analysis, which takes ten times as long."""
+    """Parse a text. A whole analysis would take ten times as long."""
     parser = _Prepared()
     return parser.read(parser.normalise(text, Settings().agent_names))
 
 
 def triples(text: str) -> list[tuple[str, str, str]]:
-    """By nlp; a question word by its name."""
+    """Return the triples that nlp finds in a text. A question word is given as its name."""
     tree, entities = _read(text)
     found = (statement.triple for statement in statements_of(tree, entities, Clause.all_in(tree)))
     return [(text_of(s), predicate, text_of(o)) for s, predicate, o in found]
@@ -78,14 +78,14 @@ def text_of(part: str | QuestionWord) -> str:
 
 
 def flags(text: str) -> str:
-    """Return the flags of the last statement, by nlp; ``-`` if it holds."""
+    """Return the flags that nlp finds on the last statement; ``-`` if the statement holds."""
     tree, entities = _read(text)
     *_, last = statements_of(tree, entities, Clause.all_in(tree))
     return "-" if last.holds else " ".join(flag for flag in FLAGS if getattr(last, flag))
 
 
 def question(text: str) -> QuestionWord | None:
-    """Return the kind of a question, by nlp; None if a text asks nothing."""
+    """Return the kind of question that nlp finds; None if a text asks nothing."""
     return question_of(_read(text)[0])
 
 
@@ -96,7 +96,7 @@ def questions(text: str) -> str:
 
 
 def yesno(text: str) -> str:
-    """By nlp, with the examples learnt."""
+    """Return the label of the meaning that a loaded nlp finds in an answer."""
     bundled_matcher("answers").load()
     return yesno_label(_seen(text).yesno)
 
@@ -111,12 +111,12 @@ def yesno_label(answer: YesNo) -> str:
 
 
 def plain(text: str) -> str:
-    """Return only the words of a text, for comparing texts."""
+    """Return only the words of a text, so that texts can be compared."""
     return " ".join(re.findall(r"[a-z0-9]+", text.lower().replace("'", "")))
 
 
 def genqa(text: str) -> Reply | None:
-    """By genqa, without a talk before."""
+    """Return the reply of genqa to a question that begins a conversation."""
     settings, seen = genqa_module.Settings(), _seen(text)
     heard = parsed(seen.tree, seen.entities, seen.question)
     if not_asked(heard, seen):

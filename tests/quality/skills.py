@@ -1,6 +1,6 @@
-"""The sets of the skills: each function has the name of its file, takes a sentence, and returns a label.
+"""Measure the sets of the skills. For each set, a function of the same name takes a sentence, and returns a label.
 
-A sentence may begin with its situation in brackets: ``[asked home] hannover``.
+A sentence can begin with its situation in brackets: ``[asked home] hannover``.
 """
 
 from __future__ import annotations
@@ -39,13 +39,13 @@ FLOORS = {
     "wildtalk_facts": 0.97,
     "hibye_words": 0.97,
 }
-"""The minimum share of right labels: the last result rounded down, or 0.97 for a perfect one."""
+"""The minimum share of right labels: the last result rounded down, or 0.97 if the last result was perfect."""
 
 _SITUATION = re.compile(r"(?:\[(asked|told|knows) ([^]=]+)(?:=([^]]*))?\] )?(.*)")
 
 
 def situation_in(sentence: str) -> tuple[tuple[Any, Any, Any], str]:
-    """Return the parts of the situation in brackets, None if they are missing, and the sentence after it."""
+    """Return the parts of the situation in brackets (None if they are missing), and the sentence after it."""
     situation = _SITUATION.fullmatch(sentence)
     assert situation is not None
     what, topic, value, text = situation.groups()
@@ -53,7 +53,10 @@ def situation_in(sentence: str) -> tuple[tuple[Any, Any, Any], str]:
 
 
 def talk_before(sentence: str) -> tuple[str, Talk, dict[str, tuple[str, ...]]]:
-    """Return a sentence without its situation, the talk before it, and the known facts: ``[knows home=Ulm; age=36] ...``."""
+    """Return a sentence without its situation, the talk before it, and the known facts.
+
+    Known facts are written as ``[knows home=Ulm; age=36] ...``.
+    """
     (what, topic, value), text = situation_in(sentence)
     if not what or what == "asked":
         return text, Talk().asking(topic, 0.0).speaking() if what else Talk(), {}
@@ -63,14 +66,14 @@ def talk_before(sentence: str) -> tuple[str, Talk, dict[str, tuple[str, ...]]]:
 
 
 def meaning_of(sentence: str) -> Meaning:
-    """Return what the user tells or asks about themselves, in the situation in brackets."""
+    """Return what the user tells or asks about themselves. The sentence can begin with its situation in brackets."""
     text, talk, known = talk_before(sentence)
     _load()
     return understand(_seen(text), talk, known, now=1.0, within=90.0)
 
 
 def persqa_facts(sentence: str) -> str:
-    """Return what the user tells or asks about themselves."""
+    """Return what the user tells or asks about themselves, as a label."""
     meaning = meaning_of(sentence)
     facts = " ".join(map(_label, sorted(meaning.facts, key=lambda fact: fact.topic)))
     if meaning.kind in ("told", "corrected"):
@@ -97,15 +100,15 @@ def _listener() -> Listener:
 
 
 def smalltalk(sentence: str) -> str:
-    """Return the listener's answer to an utterance that begins a talk."""
+    """Return the listener's answer to an utterance that begins a conversation."""
     return _listener().answer(Heard(sentence, _seen(sentence)), State(), random.Random(0)).text
 
 
 def facts(sentence: str) -> str:
-    """Return what a sentence tells when nothing is known and nothing was asked.
+    """Return the facts in a sentence, if no fact is known and no question was asked before.
 
-    The parts are joined by semicolons: ``topic=value``, ``topic=a|b``, ``not topic=value``; ``Subject / verb / object`` for
-    what no topic covers; ``-`` for nothing.
+    Semicolons join the facts: ``topic=value``, ``topic=a|b``, ``not topic=value``, or ``Subject / verb / object`` if no
+    topic fits. Without facts, return ``-``.
     """
     _load()
     reader = Reader(_seen(sentence))
@@ -126,7 +129,7 @@ def agentqa_asks(sentence: str) -> str:
 
 
 def about_rows(sentence: str) -> str:
-    """Return the topic about the agent that a sentence asks for, in a set of many voices."""
+    """Return the topic about the agent that a sentence asks for. The sentences of this set have many styles."""
     return agentqa_asks(sentence)
 
 
@@ -139,17 +142,17 @@ def agentqa_remarks(sentence: str) -> str:
 
 
 def genqa_declined(sentence: str) -> str:
-    """Return whether a question is answered: ``-`` where no document can have the answer."""
+    """Return whether genqa answers a question; ``-`` if no document can have the answer."""
     return "-" if modules.genqa(sentence) is None else "said"
 
 
 def wildtalk_facts(sentence: str) -> str:
-    """Return whether small talk leaves a question alone because it asks for a fact."""
+    """Return whether small talk does not answer a question, because it asks for a fact."""
     return "fact" if asks_for_fact(sentence) else "-"
 
 
 def hibye_words(sentence: str) -> str:
-    """Return whether a sentence only greets, or only says goodbye."""
+    """Return whether a sentence is only a greeting, or only a farewell."""
     bundled_matcher("acts").load()
     said = heard(sentence)
     return next((act for act in ("greeting", "farewell") if only(act, said)), "-")
@@ -172,7 +175,7 @@ def result(name: str) -> measure.Result:
 
 
 def prepare(sentences: Iterable[str]) -> None:
-    """Parse sentences at once, without their situations."""
+    """Parse all sentences without their situations."""
     modules.prepare(situation_in(sentence)[1] for sentence in sentences)
 
 

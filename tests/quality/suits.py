@@ -1,8 +1,9 @@
-"""How well the listener judges whether the replies of an entry of its bank suit an utterance.
+"""Learn how the listener judges whether the replies of an entry in its bank suit an utterance.
 
     python tests/quality/suits.py
 
-learns the weights of `wildtalk.listening.suitability` from suits_rows.tsv and prints them; it takes a minute.
+This command learns the weights of `wildtalk.listening.suitability` from suits_rows.tsv, and prints them. It takes a
+minute.
 """
 
 from __future__ import annotations
@@ -32,7 +33,7 @@ STEPS, RATE = 1500, 0.5
 
 
 def evidence(name: str) -> tuple[list[Evidence], NDArray[Any]]:
-    """Return the evidence of each row of a set, and its label: 1 if the replies suit."""
+    """Return the evidence of each row of a set, and its label: 1 if the replies suit the utterance."""
     lines = (measure.HERE / f"{name}.tsv").read_text(encoding="utf-8").splitlines()
     rows = [line.split("\t") for line in lines if line and not line.startswith("#")]
     groups = [(utterance, sentences.split(" | ")) for utterance, _, sentences in rows]

@@ -1,6 +1,6 @@
-"""Whole talks: how often the last answer of the complete agent fits.
+"""Measure whole conversations: how often the last answer of the complete agent fits.
 
-Each row of talks_rows.tsv has a cause, a short talk of the user, and a regular expression for the agent's last answer.
+Each row of talks_rows.tsv has a cause, a few utterances of the user, and a regular expression for the last answer.
 """
 
 from __future__ import annotations
@@ -17,14 +17,14 @@ FLOORS = {"show": 0.85, "repair": 0.8, "offence": 0.9, "self": 0.8, "news": 0.9,
 
 
 def rows(cause: str) -> list[tuple[list[str], str]]:
-    """Return the talks of a cause, each with the expression for its last answer."""
+    """Return the conversations of a cause, each with the expression for its last answer."""
     lines = (measure.HERE / "talks_rows.tsv").read_text(encoding="utf-8").splitlines()
     found = [line.split("\t") for line in lines if line and not line.startswith("#")]
     return [(talk.split(" | "), wanted) for name, talk, wanted in found if name == cause]
 
 
 def measured(cause: str, folder: Path) -> measure.Result:
-    """Return the share of talks whose last answer fits."""
+    """Return the share of conversations whose last answer fits."""
     learn_all()
     cases, misses = rows(cause), list[str]()
     for place, (talk, wanted) in enumerate(cases):
@@ -36,7 +36,7 @@ def measured(cause: str, folder: Path) -> measure.Result:
 
 
 def last_answer(talk: list[str], folder: Path) -> str:
-    """Return what the agent answers to the last line of a talk."""
+    """Return the agent's answer to the last utterance of a conversation."""
     folder.mkdir(parents=True)
     settings = {"wildtalk": {"backend": "listen"}, "idle": {"bored_after": 500.0}}
     with Conversation(folder, settings, without=("fillers", "emotion")) as conversation:

@@ -1,6 +1,6 @@
-"""The floors of language understanding on the blind sets: a little below the last measurement.
+"""The floors of language understanding on the blind sets. They are a little below the last measurement.
 
-They only rise, unless a new set replaces an old one.
+A floor may only be raised, unless a new set replaces an old set.
 """
 
 from __future__ import annotations
@@ -44,9 +44,9 @@ def result() -> Callable[[str], Result]:
 
 
 @pytest.mark.parametrize(("name", "share"), FLOORS)
-def test_a_blind_set_is_understood_as_well_as_before(name: str, share: str, result: Callable[[str], Result]) -> None:
+def test_the_share_of_a_blind_set_stays_above_its_floor(name: str, share: str, result: Callable[[str], Result]) -> None:
     assert result(name).shares[share] >= FLOORS[name, share]
 
 
-def test_the_agents_feelings_are_seldom_false(result: Callable[[str], Result]) -> None:
+def test_at_most_3_percent_of_neutral_texts_raise_a_feeling(result: Callable[[str], Result]) -> None:
     assert result("feelings").shares["false alarms"] <= 0.03

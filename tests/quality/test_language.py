@@ -1,4 +1,4 @@
-"""Sentences that worked still work, with few exceptions."""
+"""Sentences that the agent once understood are still understood, with few exceptions."""
 
 from __future__ import annotations
 
@@ -22,7 +22,7 @@ FLOORS = {
     "answers_rows": 0.86,
     "kinds_rows": 0.95,
 }
-"""Sets for recognition by examples, without sentences that are examples; and sentences that people typed in a hurry."""
+"""Lower floors, for sets that share no sentence with the examples, and for sentences that people typed in a hurry."""
 LABELS = {
     "questions_rows": {"PERSON", "PLACE", "OBJECT", "FORM", "TIME", "REASON", "AMOUNT", "YES_NO", "-"},
     "kinds_rows": {"PERSON", "PLACE", "OBJECT", "FORM", "TIME", "REASON", "AMOUNT", "YES_NO", "-"},
@@ -44,7 +44,7 @@ def test_known_sentences_are_understood(name: str) -> None:
     assert share >= FLOORS.get(name, FLOOR), "\n".join(result.misses)
 
 
-def test_a_set_sees_what_the_whole_analysis_has() -> None:
+def test_the_measurements_give_the_same_results_as_a_whole_analysis() -> None:
     for text, _ in (*labelled("triples_rows")[::30], *labelled("questions_rows")[::20]):
         whole = modules._seen(text)
         assert [tuple(map(modules.text_of, triple)) for triple in whole.triples] == modules.triples(text)
@@ -52,7 +52,7 @@ def test_a_set_sees_what_the_whole_analysis_has() -> None:
 
 
 @pytest.mark.parametrize("name", SETS)
-def test_no_sentence_counts_twice(name: str) -> None:
+def test_no_set_of_nlp_has_a_sentence_twice(name: str) -> None:
     rows = typed() if name == "typed_rows" else labelled(name)
     assert [text for text, count in Counter(text for text, _ in rows).items() if count > 1] == []
 
@@ -67,7 +67,7 @@ def test_each_label_is_known_and_occurs(name: str) -> None:
         assert labels == LABELS[name]
 
 
-def test_the_notation_of_triples() -> None:
+def test_triples_are_read_from_their_notation() -> None:
     assert triples_of("My_sister sing _; I not_like tea") == {
         ("My sister", "sing", ""),
         ("I", "not like", "tea"),

@@ -1,4 +1,4 @@
-"""The sets are well formed, and the tool counts correctly."""
+"""The set for genqa is well-formed, and `measure.py` counts correctly."""
 
 from pathlib import Path
 
@@ -8,7 +8,7 @@ from quality import measure, modules
 from quality.measure import Fact, Reply
 
 
-def test_the_set_is_large_enough_and_says_nothing_twice() -> None:
+def test_the_set_has_at_least_40_different_questions() -> None:
     sentences = [fact.question.casefold() for fact in measure.facts()]
     assert len(set(sentences)) == len(sentences) >= 40
 
@@ -19,7 +19,7 @@ def test_no_question_about_the_world_is_used_for_the_calibration() -> None:
     assert known.isdisjoint(modules.plain(fact.question) for fact in measure.facts())
 
 
-def test_a_fact_is_either_answerable_or_a_case_for_silence() -> None:
+def test_each_question_has_either_an_answer_or_the_mark_silent() -> None:
     cases = measure.read_yaml(measure.HERE / "genqa.yaml")
     for case in cases:
         assert case.get("silent", False) == (not case.keys() & {"answers", "number"}), case
@@ -32,7 +32,7 @@ def test_a_sentence_with_one_triple_too_many_is_not_exact() -> None:
     assert result.shares["F1 of single triples"] == pytest.approx(2 / 3)
 
 
-def test_a_wrong_label_costs_precision_and_recall() -> None:
+def test_a_wrong_label_lowers_precision_and_recall() -> None:
     cases = [("a", "age"), ("b", "name"), ("c", "-"), ("d", "-")]
     seen = {"a": "age", "b": "home", "c": "-", "d": "age"}
     result = measure.measure_labels("agentqa", seen.__getitem__, cases)
@@ -54,11 +54,11 @@ def test_a_wrong_label_costs_precision_and_recall() -> None:
         (Fact("", (), 1957), "in 1958", False),
     ],
 )
-def test_answers_are_recognised(fact: Fact, reply: str, right: bool) -> None:
+def test_an_answer_is_recognised_in_a_reply(fact: Fact, reply: str, right: bool) -> None:
     assert fact.answered_by(reply) is right
 
 
-def test_answers_and_silences_are_told_apart() -> None:
+def test_answers_and_silences_are_counted_separately() -> None:
     cases = [Fact("a", ("x",)), Fact("b", ("x",)), Fact("c", ("x",)), Fact("d"), Fact("e")]
     replies = {"a": Reply("x", True), "b": Reply("y", False), "c": None, "d": None, "e": Reply("x", True)}
     result = measure.measure_facts(replies.__getitem__, cases)
@@ -72,7 +72,7 @@ def test_answers_and_silences_are_told_apart() -> None:
     }
 
 
-def test_the_table_names_each_set_and_the_misses_are_listed(
+def test_the_tool_prints_a_table_of_the_sets_and_a_list_of_the_misses(
     capsys: pytest.CaptureFixture[str], monkeypatch: pytest.MonkeyPatch, tmp_path: Path
 ) -> None:
     lines = ["from quality.measure import measure_labels", "def results():"]

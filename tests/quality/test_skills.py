@@ -1,4 +1,4 @@
-"""The skills understand the sentences of their sets as well as they did."""
+"""The skills still understand the sentences of their sets."""
 
 from __future__ import annotations
 
@@ -11,7 +11,7 @@ from quality.modules import plain
 from ravestate.modules.skill.agentqa.life_file import read_life
 
 
-def test_known_facts_change_only_if_their_owner_says_so() -> None:
+def test_known_facts_change_only_if_the_user_says_so() -> None:
     left, changed = told.measured_changes()
     assert left.shares["right"] >= 0.98, left.misses
     assert changed.shares["right"] >= 0.9, changed.misses
@@ -54,7 +54,7 @@ def test_distress_is_never_missed() -> None:
     assert measure.measure_labels("distress", skills.agentqa_remarks, cases).misses == []
 
 
-def test_no_question_to_the_agent_is_one_of_its_examples() -> None:
+def test_the_set_of_questions_to_the_agent_has_none_of_its_examples() -> None:
     life = read_life()
     examples = {plain(question) for topic in life.topics.values() for question in topic.questions}
     examples |= set(map(plain, life.others))

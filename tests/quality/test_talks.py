@@ -1,4 +1,4 @@
-"""The whole agent without a language model answers the last lines of short talks (talks_rows.tsv) as well as it did."""
+"""The complete agent without a language model still answers the conversations in talks_rows.tsv well."""
 
 from __future__ import annotations
 

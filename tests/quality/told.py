@@ -1,4 +1,4 @@
-"""The development sets of facts that users tell, with the scores of the blind set, and the set of changes."""
+"""Measure the development sets of facts that users tell, and the set of changes of known facts."""
 
 from __future__ import annotations
 
@@ -13,7 +13,7 @@ SETS = ("told_rows", "told_blind_rows", "told_fresh_rows", "told_later_rows", "t
 
 
 def changes(sentence: str) -> frozenset[str]:
-    """Return what an utterance changes in the known facts: the values that are gone, and the new ones."""
+    """Return how an utterance changes the known facts: the values that it removes, and the values that it adds."""
     _, talk, known = skills.talk_before(sentence)
     meaning = skills.meaning_of(sentence)
     if meaning.kind in ("strike", "forget", "mistaken"):
@@ -32,7 +32,7 @@ def changes(sentence: str) -> frozenset[str]:
 
 
 def measured_changes() -> list[Result]:
-    """Measure the utterances that leave all known facts alone, and the changes that are made rightly."""
+    """Measure how often an utterance rightly changes no known fact, and how often a change is right."""
     cases = {kind: blind.facts((kind,), "../changes_rows") for kind in ("left", "changed")}
     skills.prepare(text for rows in cases.values() for text, _ in rows)
     found: list[Result] = []

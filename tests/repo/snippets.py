@@ -10,7 +10,7 @@ The rules for authors of documentation:
   names. `title="hello.py, continued"` adds to the file.
 - If a block's title begins with `test_`, pytest runs the block too, as a reader would. A block with functions `test_*`
   must have such a title, because otherwise no code would call them.
-- A block right under `<!-- in: pipecat -->` runs in the environment `.venvs/pipecat`, in a process of its own. If a
+- A block right under `<!-- in: pipecat -->` runs in the environment `.venvs/pipecat`, in a separate process. If a
   test on the page imports the block, that test runs it.
 - The tests skip a block right under `<!-- not run: the reason -->`, and show the reason. Use this rarely.
 - The tests do not run blocks of other languages (`bash`, `console`, `yaml`, `text`, ...).
@@ -55,7 +55,7 @@ class Block:
 
     @property
     def runs(self) -> bool:
-        """Whether the tests run the block, or would run it if the page gave no reason to skip it."""
+        """Whether the tests run blocks of this language. The page can still give a reason to skip this block."""
         return self.language in LANGUAGES
 
     @property
@@ -68,7 +68,7 @@ class Block:
 
 
 def blocks_in(file: Path) -> list[Block]:
-    """Return the fenced blocks of `file`, in order. Raise a ValueError for a fence that is never closed."""
+    """Return the fenced blocks of `file` in order. Raise a ValueError if a fence is never closed."""
     found: list[Block] = []
     lines = iter(enumerate(file.read_text(encoding="utf-8").splitlines(), start=1))
     reason: str | None = None
@@ -123,11 +123,11 @@ class Page:
         self.module = self._namespace("")
 
     def run(self, block: Block) -> None:
-        """Run `block`, after earlier blocks that have not run yet. Raise the exception that the block raises."""
+        """Run the earlier blocks that have not run yet, and then `block`. Raise the exception that a block raises."""
         while self.done <= self.blocks.index(block):
             current = self.blocks[self.done]
             self.done += 1
-            with self._at_home():  # import a file again, because a later block may have added to it
+            with self._at_home():  # import each file again, because a later block can have added to it
                 self._run_next(current)
 
     def _run_next(self, block: Block) -> None:
@@ -151,7 +151,7 @@ class Page:
         return bool(file) and any(re.search(line, test.code, re.MULTILINE) for test in tests)
 
     def leavings(self) -> list[str]:
-        """Return the files that the blocks have made, except the files on the page."""
+        """Return the files that the blocks have created, except the files on the page."""
         made = [path.relative_to(self.folder) for path in self.folder.rglob("*") if path.is_file()]
         shown = {(block.title or "").removesuffix(", continued") for block in self.blocks}
         return sorted(str(path) for path in made if str(path) not in shown and "__pycache__" not in path.parts)
@@ -173,7 +173,7 @@ class Page:
     @contextlib.contextmanager
     def _at_home(self) -> Iterator[None]:
         """Work in the page's folder, and import from it."""
-        for file in self.folder.glob("*.py"):  # another test may have imported another file with this name
+        for file in self.folder.glob("*.py"):  # another test can have imported a different file with this name
             sys.modules.pop(file.stem, None)
         before, path, known = Path.cwd(), list(sys.path), set(sys.modules)
         os.chdir(self.folder)
@@ -216,7 +216,7 @@ def run_pycon(block: Block, module: types.ModuleType) -> None:
     """Run a `pycon` block, and compare its output. Raise an AssertionError with the difference."""
     options = doctest.ELLIPSIS | doctest.NORMALIZE_WHITESPACE
     test = doctest.DocTestParser().get_doctest(block.code, module.__dict__, str(block), str(block.file), block.line - 1)
-    test.globs = module.__dict__  # the parser made a copy, which would lose the definitions of the block
+    test.globs = module.__dict__  # the parser has made a copy, which would lose the definitions of the block
     report: list[str] = []
     doctest.DocTestRunner(optionflags=options, verbose=False).run(test, out=report.append, clear_globs=False)
     assert not report, "".join(report)
@@ -226,14 +226,16 @@ def run_tests(block: Block, folder: Path) -> None:
     """Run a block's file with pytest, in a separate process. If a test fails, raise an AssertionError with the
     output."""
     name = Path(block.title or "").name
-    assert name.startswith("test_") and name.endswith(".py"), f'{block}: give it title="test_....py", or drop its tests'
+    assert name.startswith("test_") and name.endswith(".py"), (
+        f'{block}: give it title="test_....py", or remove its tests'
+    )
     run_process(block, folder, sys.executable, "-m", "pytest", "-q", "-p", "no:cacheprovider", str(block.title))
 
 
 def run_apart(block: Block, folder: Path) -> None:
     """Run a block in the environment that it names. If it fails, raise an AssertionError with the output."""
     python = ENVIRONMENTS / str(block.environment) / "bin" / "python"
-    assert python.exists(), f"there is no environment {block.environment}: `make test` makes it"
+    assert python.exists(), f"there is no environment {block.environment}: `make test` creates it"
     if block.has_tests:
         run_process(block, folder, python, "-m", "pytest", "-q", "-p", "no:cacheprovider", str(block.title))
     else:

@@ -1,4 +1,4 @@
-"""The benchmarks can be imported, and their tables and pictures fit the pages."""
+"""The benchmarks can be imported, and their tables and pictures fit into the pages."""
 
 from __future__ import annotations
 
@@ -14,14 +14,14 @@ QUESTIONS = sorted(file.stem for file in (ROOT / "benchmarks" / "questions").glo
 
 
 @pytest.mark.parametrize("question", QUESTIONS)
-def test_a_question_can_be_asked(question: str, monkeypatch: pytest.MonkeyPatch) -> None:
+def test_each_benchmark_can_be_imported(question: str, monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.syspath_prepend(str(ROOT))
     asked = import_module(f"benchmarks.questions.{question}")
     assert callable(asked.ask)
     assert question in import_module("benchmarks.questions").QUESTIONS
 
 
-def test_a_page_gets_the_tables_that_it_has_a_place_for(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+def test_a_page_gets_only_the_tables_for_which_it_has_a_place(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.syspath_prepend(str(ROOT))
     figures, table = import_module("benchmarks.figures"), import_module("benchmarks.table")
     page = tmp_path / "page.md"
@@ -36,7 +36,7 @@ def test_a_page_gets_the_tables_that_it_has_a_place_for(tmp_path: Path, monkeypa
         table.write_page(page, "Two cores", found)
 
 
-def test_the_picture_of_a_comparison_has_a_bar_for_each_contestant(monkeypatch: pytest.MonkeyPatch) -> None:
+def test_the_picture_of_a_comparison_has_a_bar_for_each_compared_library(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.syspath_prepend(str(ROOT))
     compare, plot = import_module("benchmarks.figures").compare, import_module("benchmarks.plot").plot
     times = {"one": 2e-3, "other": 3e-5, "slow & steady": 0.4, "floor: 2 callbacks": 6e-6}

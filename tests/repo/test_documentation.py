@@ -1,4 +1,4 @@
-"""The lists in the documentation are complete: how-tos, commands, extras, the packages of models."""
+"""The documentation is complete: its pages are linked, and it lists all commands, extras and models."""
 
 import re
 import tomllib
@@ -17,12 +17,13 @@ def text_of(path: str) -> str:
 def test_the_first_page_leads_to_every_other_page() -> None:
     linked = set(re.findall(r"\]\(([\w/.-]+\.md)\)", text_of("docs/index.md")))
     pages = {page.relative_to(DOCS).as_posix() for page in DOCS.rglob("*.md")}
-    of_the_reference = {page for page in pages if page.startswith("reference/")}  # one page leads to the others
+    # a reader reaches the pages of the reference through its own index
+    of_the_reference = {page for page in pages if page.startswith("reference/")}
     assert linked == pages - of_the_reference - {"index.md"} | {"reference/index.md"}
 
 
-def test_every_link_leads_somewhere() -> None:
-    made = re.compile(r"reference/(?:modules/)?[\w-]+\.md$")  # by tools/docs.py
+def test_every_link_has_a_target() -> None:
+    made = re.compile(r"reference/(?:modules/)?[\w-]+\.md$")  # tools/docs.py writes this file
     broken: list[str] = []
     for page in [ROOT / "README.md", *sorted(DOCS.rglob("*.md"))]:
         text = re.sub(r"^```.*?^```", "", page.read_text(encoding="utf-8"), flags=re.MULTILINE | re.DOTALL)
@@ -48,7 +49,7 @@ def test_the_page_about_installing_lists_every_extra() -> None:
     assert set(re.findall(r"^\| `([\w-]+)` \|", page, re.MULTILINE)) == extras - {"dev", "docs"}
 
 
-def test_the_pages_name_the_models_that_make_installs() -> None:
+def test_the_pages_name_the_models_that_the_makefile_installs() -> None:
     found = re.search(r"^SENTENCES := (.*)$", text_of("Makefile"), re.MULTILINE)
     assert found is not None
     page = text_of("docs/how-to/install-it-in-a-project.md")

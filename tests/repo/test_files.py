@@ -1,4 +1,4 @@
-"""Rules for every tracked file: no addresses of registries, no folders of one machine, a docstring."""
+"""Every tracked file is free of registry addresses and local paths. Every source file has a docstring."""
 
 import ast
 import re
@@ -28,7 +28,7 @@ def lines_matching(pattern: re.Pattern[str], files: list[Path]) -> list[str]:
         try:
             text = file.read_text(encoding="utf-8")
         except UnicodeDecodeError:
-            continue  # a picture, a sound, a model
+            continue  # a binary file: a picture, a sound or a model
         found += [
             f"{file.relative_to(ROOT)}:{number}: {hit[0]}"
             for number, line in enumerate(text.splitlines(), start=1)
@@ -47,21 +47,21 @@ REGISTRIES = [
 ]
 
 
-def test_no_registry_is_named() -> None:
+def test_no_file_names_a_package_registry() -> None:
     """Pins name packages and versions. The installing machine chooses the registry."""
     found = lines_matching(re.compile("|".join(REGISTRIES), re.IGNORECASE), kept_files())
     assert not found, "\n".join(found)
 
 
-def test_no_folder_of_one_machine_is_named() -> None:
-    """No file has the path of this checkout or of a user's home."""
+def test_no_file_names_a_folder_of_this_machine() -> None:
+    """No file contains the path of this checkout or of a user's home folder."""
     folders = [re.escape(str(place)) for place in (ROOT, Path.home()) if len(place.parts) > 2]
     folders += [r"/(?:home|Users)/(?!user\b|me\b|you\b|runner\b)\w+", r"(?<![\w.])/(?:ro" r"ot|wo" r"rk)/\w"]
     found = lines_matching(re.compile("|".join(folders)), kept_files())
     assert not found, "\n".join(found)
 
 
-def test_constraints_name_versions_and_nothing_else() -> None:
+def test_the_constraints_file_has_only_names_and_versions() -> None:
     pin = re.compile(r"#.*|[A-Za-z0-9][A-Za-z0-9._-]*==[A-Za-z0-9.!+]+|")
     lines = (ROOT / "constraints.txt").read_text(encoding="utf-8").splitlines()
     assert [line for line in lines if not pin.fullmatch(line)] == []
@@ -76,7 +76,7 @@ def test_every_source_file_says_what_it_is() -> None:
     assert not silent, "\n".join(silent)
 
 
-def test_no_test_sleeps() -> None:
+def test_no_test_sleeps_in_real_time() -> None:
     """Tests run in virtual time. A real sleep makes a test slow, and sometimes wrong."""
     tests = [file for file in kept_files() if file.is_relative_to(ROOT / "tests") and file.suffix == ".py"]
     found = lines_matching(re.compile(r"\b(?:time|asyncio)\.sleep\((?!0\))"), tests)

@@ -1,4 +1,4 @@
-"""`import ravestate` is quick and leaves no trace: no third party, no loop, no log, no thread."""
+"""`import ravestate` loads no third-party package and no event loop, starts no thread, and logs nothing."""
 
 import json
 import subprocess
@@ -24,7 +24,7 @@ print(json.dumps({{
 
 
 def loaded_by(module: str) -> dict[str, object]:
-    """Import `module` in a new interpreter and return the side effects."""
+    """Import `module` in a new interpreter, and return the side effects of the import."""
     run = subprocess.run(
         [sys.executable, "-c", PROBE.format(module=module)], capture_output=True, text=True, check=False
     )
@@ -33,17 +33,17 @@ def loaded_by(module: str) -> dict[str, object]:
     return json.loads(run.stdout)
 
 
-def test_import_loads_no_third_party() -> None:
+def test_import_loads_no_third_party_package() -> None:
     found = loaded_by("ravestate")
     tops = {name.partition(".")[0] for name in found["loaded"]}  # type: ignore[attr-defined]
     assert tops - sys.stdlib_module_names - {"ravestate"} == set()
 
 
-def test_import_loads_no_loop() -> None:
+def test_import_loads_no_event_loop() -> None:
     assert "asyncio" not in loaded_by("ravestate")["loaded"]  # type: ignore[operator]
 
 
-def test_import_leaves_no_trace() -> None:
+def test_import_has_no_side_effects() -> None:
     found = loaded_by("ravestate")
     assert (found["threads"], found["handlers"], found["filters"], found["hooks"]) == (1, 0, 0, True)
 

@@ -28,7 +28,10 @@ PURE_LIBRARY = {
     "traceback", "types", "typing", "unicodedata", "weakref",
     "xml.sax.saxutils", "zlib",
 }  # fmt: skip
-"""Modules of the standard library for values and algorithms. Never add clocks, loops, threads, chance, files or logs."""
+"""The modules of the standard library that pure packages may import.
+
+Never add clocks, event loops, threads, random numbers, files or logs.
+"""
 
 
 def files_of(*packages: str) -> list[Path]:
@@ -65,7 +68,7 @@ def imports_in(file: Path) -> list[Import]:
             yield Import(node.lineno, module, tuple(alias.name for alias in node.names), late)
         late = late or isinstance(node, (ast.FunctionDef, ast.AsyncFunctionDef))
         for child in children:
-            if isinstance(child, (ast.stmt, ast.ExceptHandler, ast.match_case)):  # expressions import nothing
+            if isinstance(child, (ast.stmt, ast.ExceptHandler, ast.match_case)):  # an expression contains no import
                 yield from visit(child, late)
 
     return list(visit(ast.parse(file.read_text(encoding="utf-8"), str(file)), False))
@@ -104,7 +107,7 @@ def test_nothing_imports_the_command_line() -> None:
     assert not guilty, "\n".join(guilty)
 
 
-def test_skills_know_no_platform() -> None:
+def test_skills_do_not_import_platforms() -> None:
     platforms = {place.stem for place in (SOURCE / "modules" / "platform").glob("[!_]*")}
     guilty = [
         f"{path_of(file)}:{line}: {module} {', '.join(names)}"
@@ -118,7 +121,7 @@ def test_skills_know_no_platform() -> None:
     assert not guilty, "\n".join(guilty)
 
 
-def test_modules_are_folders_all_built_alike() -> None:
+def test_all_modules_are_folders_with_the_same_files() -> None:
     missing = [
         f"modules/{kind}/{place.name}: no {wanted}"
         for kind in KINDS
@@ -129,7 +132,7 @@ def test_modules_are_folders_all_built_alike() -> None:
     assert not missing, "\n".join(missing)
 
 
-def test_no_import_leads_back_to_its_file() -> None:
+def test_imports_form_no_cycle() -> None:
     """Imports at the top of files form no cycle. Imports within functions run later, so they do not count."""
     files = {module_name(file): file for file in SOURCE.rglob("*.py")}
     graph: dict[str, set[str]] = {}

@@ -1,4 +1,4 @@
-"""The built wheel: its files, its version, its licence, its requirements."""
+"""The built wheel has the right files, version, licence and requirements."""
 
 import email
 import importlib.metadata
@@ -21,7 +21,7 @@ NOT_SHIPPED = {".pyc", ".pyo"}
 
 @pytest.fixture(scope="module")
 def wheel(tmp_path_factory: pytest.TempPathFactory) -> zipfile.ZipFile:
-    """The wheel, built without network from a copy of the files, outside of git and of this checkout."""
+    """The wheel. It is built without a network, from a copy of the files outside of this checkout."""
     place = tmp_path_factory.mktemp("wheel")
     copy = place / "ravestate"
     copy.mkdir()
@@ -39,7 +39,7 @@ def wheel(tmp_path_factory: pytest.TempPathFactory) -> zipfile.ZipFile:
 
 
 def test_wheel_has_every_file_of_the_package(wheel: zipfile.ZipFile) -> None:
-    """Code and data alike: phrases, model lists, the built user interface, READMEs."""
+    """These are code and data, such as phrases, model lists, the built user interface and READMEs."""
     source = ROOT / "src"
     wanted = {
         file.relative_to(source).as_posix()
@@ -59,7 +59,7 @@ def test_wheel_has_licence_and_command(wheel: zipfile.ZipFile) -> None:
     assert "ravestate = ravestate.__main__:script" in wheel.read(names["entry_points.txt"]).decode()
 
 
-def test_wheel_has_the_notices_of_what_the_pages_bundle(wheel: zipfile.ZipFile) -> None:
+def test_wheel_has_the_licence_notices_of_all_libraries_and_fonts_in_the_web_pages(wheel: zipfile.ZipFile) -> None:
     texts = [wheel.read(name).decode() for name in wheel.namelist() if ".dist-info/licenses/" in name]
     for notice in ("Svelte Contributors", "Literata Project Authors", "The Inter Project Authors"):
         assert any(notice in text for text in texts), notice
@@ -73,7 +73,7 @@ def test_readme_of_the_wheel_has_no_relative_links(wheel: zipfile.ZipFile) -> No
     assert all(link.startswith("https://") for link in links), links
 
 
-def test_wheel_works_alone(wheel: zipfile.ZipFile, tmp_path: Path) -> None:
+def test_wheel_works_without_the_checkout(wheel: zipfile.ZipFile, tmp_path: Path) -> None:
     """The import finds the built files, because the checkout is not on the path."""
     wheel.extractall(tmp_path)
     probe = f"import sys; sys.path.insert(0, {str(tmp_path)!r}); import ravestate; print(ravestate.__file__)"
@@ -83,7 +83,9 @@ def test_wheel_works_alone(wheel: zipfile.ZipFile, tmp_path: Path) -> None:
 
 
 def test_versions_agree() -> None:
-    assert "version" not in PROJECT and "version" in PROJECT["dynamic"]  # __version__ is the one place
+    assert (
+        "version" not in PROJECT and "version" in PROJECT["dynamic"]
+    )  # __version__ is the only place where the version is written
     assert ravestate.__version__ == importlib.metadata.version("ravestate")
 
 

@@ -44,7 +44,7 @@ class Gone(pydantic.BaseModel):
     type: Literal["gone"]
 
 
-def test_a_source_may_be_any_module_of_models(monkeypatch: pytest.MonkeyPatch, tmp_path: Path) -> None:
+def test_the_tool_accepts_any_module_of_pydantic_models(monkeypatch: pytest.MonkeyPatch, tmp_path: Path) -> None:
     monkeypatch.syspath_prepend(str(ROOT / "tools"))
     monkeypatch.syspath_prepend(str(tmp_path))
     (tmp_path / "sketch.py").write_text('LIMIT = 5\n"""The most shapes."""\n', encoding="utf-8")

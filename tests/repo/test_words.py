@@ -1,4 +1,4 @@
-"""The repository's prose is plain: `words.py` finds no fault."""
+"""`words.py` finds no fault in the repository's prose."""
 
 from repo.words import faults
 

@@ -1,4 +1,4 @@
-"""Find prose that a reader has to read twice: openings without a noun, circuitous passives, overlong sentences.
+"""Find prose that a reader has to read twice: openings without a noun, awkward passives, overlong sentences.
 
     python tests/repo/words.py [PATH ...]        # default: all prose of the repository
 
@@ -19,9 +19,9 @@ from typing import Any
 
 ROOT = Path(__file__).resolve().parents[2]
 LONGEST = 25
-"""Words in a sentence, or between its semicolons and colons. A code span and a number count as one word each."""
+"""The maximum number of words in a sentence, or between its semicolons and colons. A code span counts as one word."""
 WHOLE = 40
-"""Words in a sentence with all that its semicolons and colons join."""
+"""The maximum number of words between two full stops, across semicolons and colons."""
 
 HEADLESS = re.compile(
     r"^(?:(?:And|But|So|Or|Also|Then)[ ,]+)?"
@@ -63,7 +63,7 @@ class Fault:
 
 
 def sentences(prose: str) -> Iterator[str]:
-    """Yield the sentences of a paragraph. A colon, a semicolon and a dash end one as well."""
+    """Yield the sentences of a paragraph. A colon, a semicolon and a dash also end a sentence."""
     begin = 0
     for gap in END.finditer(prose):
         if ABBREVIATION.search(prose[begin : gap.start()]):
@@ -101,7 +101,7 @@ def faults_of(prose: str) -> Iterator[tuple[str, str]]:
 
 
 def of_markdown(text: str, first: int = 1) -> Iterator[tuple[int, str]]:
-    """Yield the paragraphs, list items and table cells of Markdown, with their lines; blocks of code are left out."""
+    """Yield the paragraphs, list items and table cells of Markdown, with their lines. Leave out blocks of code."""
     fence, begin, held = "", first, list[str]()
     for number, line in enumerate(text.splitlines(), first):
         bare = line.strip()
@@ -131,7 +131,7 @@ def of_markdown(text: str, first: int = 1) -> Iterator[tuple[int, str]]:
 
 
 def of_docstring(text: str, first: int) -> Iterator[tuple[int, str]]:
-    """Yield the paragraphs of a docstring. An entry of a section (``Args:``) stands for itself."""
+    """Yield the paragraphs of a docstring. Each entry of a section such as ``Args:`` is a paragraph."""
     lines = text.expandtabs().splitlines()
     margin = min((len(x) - len(x.lstrip()) for x in lines[1:] if x.strip()), default=0)
     prose: list[str] = []
@@ -148,7 +148,7 @@ def of_docstring(text: str, first: int) -> Iterator[tuple[int, str]]:
             prose.append("")
             continue
         if section and depth == 4:  # an entry begins
-            prose.append("")  # an extra line, which the offset below corrects
+            prose.append("")  # an additional line, which the offset below corrects
             bare = re.sub(r"^\s*[\w*.,|\[\] `()]+:\s", "", bare)
             prose[-1] = "\0" + bare.strip()
             continue
@@ -190,7 +190,7 @@ def of_python(text: str) -> Iterator[tuple[int, str]]:
 
 
 def nodes(tree: ast.AST) -> Iterator[ast.AST]:
-    """Yield the nodes of a tree, in half the time of ``ast.walk``."""
+    """Yield the nodes of a tree, twice as fast as ``ast.walk``."""
     found: list[Any] = [tree]
     for node in found:
         yield node
@@ -213,7 +213,7 @@ def comments(text: str) -> Iterator[tuple[int, str, bool]]:
 
 
 def _strings(node: ast.AST) -> Iterator[tuple[int, str]]:
-    """Yield the texts that an expression is made of; what an f-string fills in counts as one word."""
+    """Yield the texts in an expression. Each replacement field of an f-string counts as one word."""
     if isinstance(node, ast.Constant):
         if isinstance(node.value, str) and " " in node.value:
             for paragraph in node.value.split("\n"):
@@ -232,12 +232,12 @@ TOKEN = re.compile(
     r"""|(?:\"{3}(?:[^\\]|\\.)*?\"{3}|'{3}(?:[^\\]|\\.)*?'{3}|\"(?:[^\"\\\n]|\\.)*\"|'(?:[^'\\\n]|\\.)*')""",
     re.DOTALL,
 )
-"""A comment or a string of Python code: a ``#`` within a string begins no comment."""
+"""A comment or a string of Python code. Strings are included because a ``#`` in them begins no comment."""
 COMMENT = re.compile(r"/\*\*?(.*?)\*/|<!--(.*?)-->|(?<![:\"'\w])//[ \t](.*?)$", re.DOTALL | re.MULTILINE)
 
 
 def of_script(text: str) -> Iterator[tuple[int, str]]:
-    """Yield the comments of TypeScript, Svelte, CSS, HTML. Lines of `//` that follow each other are one."""
+    """Yield the comments of TypeScript, Svelte, CSS or HTML. Consecutive `//` lines are one comment."""
     begin, last, held = 0, -1, list[str]()
     for match in COMMENT.finditer(text):
         line = text.count("\n", 0, match.start()) + 1
@@ -270,7 +270,7 @@ def paragraphs(file: Path) -> Iterator[tuple[int, str]]:
 
 
 def files(paths: Iterable[Path] = ()) -> list[Path]:
-    """Return the tracked files with prose below `paths` (default: all)."""
+    """Return the tracked files with prose in `paths` (default: all)."""
     found = subprocess.run(
         ["git", "ls-files", "--cached", "--others", "--exclude-standard", "--", *map(str, paths)],
         cwd=ROOT, capture_output=True, text=True, check=True,
@@ -280,7 +280,7 @@ def files(paths: Iterable[Path] = ()) -> list[Path]:
 
 
 def faults(paths: Iterable[Path] = ()) -> Iterator[Fault]:
-    """Yield every fault of the files below `paths`."""
+    """Yield every fault of the files in `paths`."""
     for file in files(paths):
         for line, prose in paragraphs(file):
             for rule, sentence in faults_of(prose):

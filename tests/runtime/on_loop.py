@@ -1,4 +1,4 @@
-"""Run a test that is a coroutine, on an event loop of its own."""
+"""Run an async test function on its own event loop."""
 
 import asyncio
 import functools
@@ -6,7 +6,7 @@ from collections.abc import Callable, Coroutine
 from typing import Any
 
 LIMIT = 60
-"""Seconds after which a test that waits in vain fails; no other test takes so long."""
+"""The time after which a test that still waits has failed (seconds). All tests normally take much less."""
 
 
 def on_loop(test: Callable[..., Coroutine[Any, Any, None]]) -> Callable[..., None]:

@@ -1,4 +1,4 @@
-"""A warning names each rule that blocks the loop. Delays of a busy machine cause no warning."""
+"""A warning names each rule that blocks the event loop. Delays that a busy machine causes lead to no warning."""
 
 import asyncio
 import logging
@@ -74,7 +74,7 @@ def warnings_of(machine: Machine, caplog: pytest.LogCaptureFixture, first_step: 
 
 
 @IN_EITHER_STEP
-def test_a_rule_that_computes_too_long_is_named(
+def test_a_warning_names_a_rule_that_computes_too_long(
     machine: Machine, caplog: pytest.LogCaptureFixture, first_step: bool
 ) -> None:
     (text,) = warnings_of(machine, caplog, first_step, compute=0.25)
@@ -82,7 +82,7 @@ def test_a_rule_that_computes_too_long_is_named(
 
 
 @IN_EITHER_STEP
-def test_a_rule_that_sleeps_too_long_is_named(
+def test_a_warning_names_a_rule_that_sleeps_too_long(
     machine: Machine, caplog: pytest.LogCaptureFixture, first_step: bool
 ) -> None:
     (text,) = warnings_of(machine, caplog, first_step, compute=0.01, sleep=5.0)
@@ -91,7 +91,7 @@ def test_a_rule_that_sleeps_too_long_is_named(
 
 @IN_EITHER_STEP
 @pytest.mark.parametrize("wait", ["wait_for_a_processor", "wait_for_the_interpreter"])
-def test_a_busy_machine_raises_no_false_alarm(
+def test_a_busy_machine_causes_no_warning(
     machine: Machine, caplog: pytest.LogCaptureFixture, first_step: bool, wait: str
 ) -> None:
     assert warnings_of(machine, caplog, first_step, compute=0.05, **{wait: 5.0}) == []

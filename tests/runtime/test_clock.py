@@ -1,4 +1,4 @@
-"""The clock of a context: it can be halted, set forward and started again, and nothing else changes."""
+"""The clock of a context can be halted, set forward and started again, without other effects on the context."""
 
 from __future__ import annotations
 
@@ -16,11 +16,11 @@ from ravestate.testing.virtual_loop import VirtualLoop
 
 
 class Scene:
-    """A clock on a virtual loop, and its sleepers."""
+    """A clock on a virtual loop, and tasks that sleep by this clock."""
 
     def __init__(self) -> None:
         self.loop = VirtualLoop()
-        self.loop.run_to(7.0)  # a clock need not begin with its loop
+        self.loop.run_to(7.0)  # the clock begins later than its loop
         self.clock = Clock(self.loop)
         self.woken: list[tuple[str, float]] = []
 
@@ -83,7 +83,7 @@ def test_the_clock_is_set_forward_only_while_it_is_halted_and_never_back(scene: 
     scene.loop.close()
 
 
-def test_a_cancelled_sleeper_is_forgotten(scene: Scene) -> None:
+def test_the_clock_drops_a_sleeper_that_is_cancelled(scene: Scene) -> None:
     task = scene.sleeper("a", 2.0)
     scene.pass_by(0.5)
     task.cancel()
@@ -97,7 +97,7 @@ def test_a_cancelled_sleeper_is_forgotten(scene: Scene) -> None:
 
 
 def story() -> tuple[rs.Module, rs.Signal[None], rs.Slot[str]]:
-    """A rule that thinks about a question for 2 s, and a fallback that waits for it."""
+    """Return a module with a rule that thinks about a question for 2 s, and a fallback that waits for this rule."""
     m = rs.Module("m")
     asked, known, said = m.signal("asked"), m.signal("known"), m.slot("said", "", always=True)
 
@@ -117,7 +117,7 @@ def story() -> tuple[rs.Module, rs.Signal[None], rs.Slot[str]]:
     return m, asked, said
 
 
-def test_a_paused_context_takes_events_and_does_nothing_about_them() -> None:
+def test_a_paused_context_accepts_events_but_runs_no_rules() -> None:
     m, asked, said = story()
     with simulate(m) as sim:
         sim.context.pause()
@@ -133,7 +133,7 @@ def test_a_paused_context_takes_events_and_does_nothing_about_them() -> None:
         assert sim.read(said) == "answer at 2"
 
 
-def test_stepping_goes_from_wave_to_wave_and_skips_the_time_in_between() -> None:
+def test_each_step_of_a_paused_context_goes_to_the_next_moment_at_which_something_happens() -> None:
     m, asked, said = story()
     with simulate(m) as sim:
         sim.context.pause()
@@ -151,12 +151,12 @@ def test_stepping_goes_from_wave_to_wave_and_skips_the_time_in_between() -> None
             (2.0, "", ""),
         ]
         assert sim.read(said) == "answer at 2"
-        while sim.context.step():  # old spikes are forgotten
+        while sim.context.step():  # until the old spikes are dropped
             sim.settle()
         assert not sim.context.step()
 
 
-def test_a_pause_changes_nothing_but_the_time() -> None:
+def test_a_pause_does_not_change_the_trace() -> None:
     def tell(pauses: bool) -> list[str]:
         m, asked, _ = story()
         with simulate(m) as sim:
@@ -172,7 +172,7 @@ def test_a_pause_changes_nothing_but_the_time() -> None:
     assert tell(pauses=True) == tell(pauses=False)
 
 
-def test_a_paused_context_ends_in_order() -> None:
+def test_a_paused_context_still_runs_its_rules_for_shutdown() -> None:
     m = rs.Module("m")
     ended: list[float] = []
 
@@ -187,7 +187,7 @@ def test_a_paused_context_ends_in_order() -> None:
     assert ended == [1.0]
 
 
-def test_observers_come_and_go_while_a_context_runs() -> None:
+def test_observers_can_be_added_and_removed_while_a_context_runs() -> None:
     m, asked, _ = story()
     first: list[Any] = []
     second: list[Any] = []
@@ -204,13 +204,13 @@ def test_observers_come_and_go_while_a_context_runs() -> None:
         assert len(first) == counts[0]
         assert len(second) > counts[1]
         leave_second()
-        leave_second()  # again, to no effect
+        leave_second()  # a second call has no effect
         counts = len(first), len(second)
         sim.advance(3.0)
         assert (len(first), len(second)) == counts
 
 
-def test_a_paused_context_may_be_stepped_from_within_a_task() -> None:
+def test_a_task_can_step_a_paused_context() -> None:
     m, asked, said = story()
 
     async def talk() -> str:
@@ -226,7 +226,7 @@ def test_a_paused_context_may_be_stepped_from_within_a_task() -> None:
     assert asyncio.run(talk()).startswith("answer at 2")
 
 
-def test_a_driven_clock_moves_only_when_it_is_set_and_rules_follow_it() -> None:
+def test_a_driven_clock_advances_only_when_a_rule_sets_it() -> None:
     m = rs.Module("m")
     tick = m.signal("tick", payload=float)
     go = m.signal("go")
@@ -247,7 +247,7 @@ def test_a_driven_clock_moves_only_when_it_is_set_and_rules_follow_it() -> None:
         slept.append(ctx.now)
 
     async def main() -> None:
-        others = Clock(asyncio.get_running_loop())  # the time of the loop, which is not the context's
+        others = Clock(asyncio.get_running_loop())  # this clock follows the loop, and not the context
         async with rs.Context(m) as context:
 
             async def at(time: float) -> None:
@@ -261,7 +261,7 @@ def test_a_driven_clock_moves_only_when_it_is_set_and_rules_follow_it() -> None:
             assert (context.now, late, slept) == (11.9, [], [])
             await at(12.5)
             assert (late, slept) == ([12.5], [])
-            await at(12.0)  # the past changes nothing
+            await at(12.0)  # an earlier time changes nothing
             assert context.now == 12.5
             context.pause()
             await at(15.5)

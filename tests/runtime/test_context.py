@@ -1,4 +1,4 @@
-"""A context's life: it starts once, takes calls from the loop and from threads, and ends cleanly."""
+"""A context starts once, takes calls from its loop and from other threads, and ends cleanly."""
 
 import asyncio
 import contextlib
@@ -43,11 +43,11 @@ async def count(ctx: rs.RuleContext) -> None:
 policy = rs.compile(demo)
 
 
-# ---------------------------------------------------------------------------------------- life
+# ---------------------------------------------------------------------------------------- start and end
 
 
 @on_loop
-async def test_a_context_runs_once() -> None:
+async def test_a_context_can_run_only_once() -> None:
     context = rs.Context(policy)
     async with context:
         assert context.now >= 0.0
@@ -95,7 +95,7 @@ async def test_a_context_that_has_ended_can_only_be_read() -> None:
     assert context.read(heard) == "x"
     with pytest.raises(rs.EngineError, match="the context has ended: there will be no demo:number"):
         await context.next(number)
-    await context.stop()  # a second time changes nothing
+    await context.stop()  # a second stop changes nothing
 
 
 def test_calls_do_nothing_after_the_event_loop_has_closed() -> None:
@@ -125,7 +125,7 @@ async def test_an_exception_in_the_body_ends_the_context_and_is_raised_to_the_ca
 
 def test_faults_are_raised_before_anything_runs() -> None:
     with pytest.raises(rs.DeclarationErrors) as caught:
-        rs.Context("demo")  # a name is not a module
+        rs.Context("demo")  # the name of a module is not a module
     assert "expected an rs.Module" in str(caught.value)
     with pytest.raises(rs.DeclarationErrors) as caught:
         rs.Context(policy, demo)
@@ -138,7 +138,7 @@ def test_patience_is_a_number_of_seconds(patience: Any) -> None:
         rs.Context(policy, patience=patience)
 
 
-# ---------------------------------------------------------------------------------------- from outside
+# ---------------------------------------------------------------------------------------- calls from outside
 
 
 @on_loop
@@ -153,7 +153,7 @@ async def test_next_returns_the_answer_to_a_put_or_an_emit() -> None:
 
 
 @on_loop
-async def test_any_thread_may_put_and_emit() -> None:
+async def test_any_thread_can_call_put_emit_and_wipe() -> None:
     async with rs.Context(policy) as context:
         waiting = [asyncio.create_task(context.next(signal)) for signal in (heard.changed, number)]
         await turns(1)
@@ -191,7 +191,7 @@ async def test_calls_from_one_thread_keep_their_order() -> None:
 
 
 @on_loop
-async def test_several_tasks_may_wait_for_the_same_signal() -> None:
+async def test_several_tasks_can_wait_for_the_same_signal() -> None:
     async with rs.Context(policy) as context:
         waiting = [asyncio.create_task(context.next(number)) for _ in range(3)]
         await turns(1)
@@ -200,8 +200,10 @@ async def test_several_tasks_may_wait_for_the_same_signal() -> None:
 
 
 @on_loop
-async def test_a_spike_that_can_come_at_once_needs_no_turn_of_the_loop(monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr(runner, "perf_counter", lambda: 0.0)  # a slow machine would give the loop its turn earlier
+async def test_next_returns_a_spike_that_is_already_due_without_a_turn_of_the_event_loop(
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    monkeypatch.setattr(runner, "perf_counter", lambda: 0.0)  # on a slow machine, the loop would get its turn earlier
     async with rs.Context(policy) as context:
         ran: list[str] = []
         asyncio.get_running_loop().call_soon(ran.append, "the loop")
@@ -210,7 +212,7 @@ async def test_a_spike_that_can_come_at_once_needs_no_turn_of_the_loop(monkeypat
 
 
 @on_loop
-async def test_the_event_loop_gets_turns_even_if_every_spike_comes_at_once(monkeypatch: pytest.MonkeyPatch) -> None:
+async def test_the_event_loop_gets_turns_even_if_every_spike_is_already_due(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr(runner, "perf_counter", lambda: 0.0)
     async with rs.Context(policy) as context:
         ran: list[int] = []
@@ -223,7 +225,7 @@ async def test_the_event_loop_gets_turns_even_if_every_spike_comes_at_once(monke
 
 
 @on_loop
-async def test_rules_that_start_at_once_run_outside_the_task_that_waits() -> None:
+async def test_a_rule_does_not_run_in_the_task_that_waits_for_its_signal() -> None:
     own = rs.Module("own")
     asked, answered = own.signal("asked"), own.signal("answered")
     tasks: list[object] = []
@@ -240,7 +242,7 @@ async def test_rules_that_start_at_once_run_outside_the_task_that_waits() -> Non
 
 
 @on_loop
-async def test_next_gives_up_after_its_timeout() -> None:
+async def test_next_raises_an_error_after_its_timeout() -> None:
     async with rs.Context(policy) as context:
         with pytest.raises(TimeoutError, match="no demo:number within 0 s"):
             await context.next(number, timeout=0)
@@ -254,7 +256,7 @@ async def test_next_gives_up_after_its_timeout() -> None:
 
 
 @on_loop
-async def test_the_end_of_the_context_fails_the_tasks_that_wait() -> None:
+async def test_tasks_that_wait_for_a_signal_get_an_error_when_the_context_ends() -> None:
     async with rs.Context(policy) as context:
         waiting = asyncio.create_task(context.next(number))
         await turns(1)
@@ -278,7 +280,7 @@ async def test_quiet_waits_for_running_rules_and_ends_with_the_context() -> None
         await asyncio.get_running_loop().create_future()
 
     async with rs.Context(m) as context:
-        await context.quiet()  # background rules do not count
+        await context.quiet()  # it does not wait for background rules
         context.emit(go)
         waiting = asyncio.create_task(context.quiet())
         await turns()
@@ -294,7 +296,7 @@ async def test_quiet_waits_for_running_rules_and_ends_with_the_context() -> None
 
 
 @on_loop
-async def test_a_background_rule_does_not_hold_up_quiet() -> None:
+async def test_quiet_does_not_wait_for_background_rules() -> None:
     m = rs.Module("m")
     go, done = m.signal("go"), m.slot("done", 0)
 
@@ -304,7 +306,7 @@ async def test_a_background_rule_does_not_hold_up_quiet() -> None:
 
     @m.rule(when=go, writes=done, background=True)
     async def wait(ctx: rs.RuleContext) -> None:
-        """Wait for the slot that `keep` has taken."""
+        """A rule that waits for the slot that `keep` has taken."""
 
     async with rs.Context(m) as context:
         context.emit(go)
@@ -313,7 +315,7 @@ async def test_a_background_rule_does_not_hold_up_quiet() -> None:
 
 
 @on_loop
-async def test_a_value_of_the_wrong_type_is_refused_at_once() -> None:
+async def test_put_immediately_refuses_a_value_of_the_wrong_type() -> None:
     m = rs.Module("m")
     heard = m.slot("heard", "", type=str)
     async with rs.Context(m) as context:
@@ -358,7 +360,7 @@ async def test_waiting_for_an_unknown_signal_is_refused() -> None:
 
 
 @on_loop
-async def test_a_collection_wants_a_mapping() -> None:
+async def test_put_refuses_anything_but_a_mapping_for_a_collection() -> None:
     async with rs.Context(policy) as context:
         with pytest.raises(rs.RuleError, match="demo:people is a collection: write a mapping of keys to items"):
             context.put(people, ["Ada"])
@@ -366,11 +368,11 @@ async def test_a_collection_wants_a_mapping() -> None:
         assert dict(context.read(people)) == {"a": "Ada"}
 
 
-# ---------------------------------------------------------------------------------------- looking in
+# ---------------------------------------------------------------------------------------- observation
 
 
 @on_loop
-async def test_slots_have_values_of_their_own_in_each_context() -> None:
+async def test_slots_have_separate_values_in_each_context() -> None:
     m = rs.Module("m")
     things = m.slot("things", ["a"])
     async with rs.Context(m) as one, rs.Context(m) as other:
@@ -389,7 +391,7 @@ async def test_a_snapshot_is_plain_data() -> None:
 
 
 @on_loop
-async def test_the_trace_is_kept_or_passed_to_a_function_or_neither() -> None:
+async def test_a_trace_can_be_kept_passed_to_a_function_or_switched_off() -> None:
     told: list[object] = []
     for trace in (False, True, told.append):
         async with rs.Context(policy, trace=trace) as context:
@@ -423,7 +425,7 @@ def test_unknown_settings_are_refused() -> None:
     assert "module 'dmo' is not part of this agent; did you mean 'demo'?" in str(caught.value)
 
 
-def test_the_numbers_of_declarations_follow_the_settings() -> None:
+def test_numbers_in_declarations_follow_the_settings_of_the_context() -> None:
     m = rs.Module("m", settings=Options)
     s, done = m.signal("s"), m.slot("done", 0)
 
@@ -481,7 +483,7 @@ async def loud(ctx: rs.RuleContext) -> None:
     ctx[said] = "LOUD"
 
 
-def test_an_added_rule_follows_the_context_s_settings() -> None:
+def test_an_added_rule_follows_the_settings_of_the_context() -> None:
     m = rs.Module("m", settings=Options)
     s, done = m.signal("s"), m.slot("done", 0)
     with simulate(m, settings={"m": {"pause": 3.0}}) as sim:
@@ -500,7 +502,7 @@ def test_an_added_rule_follows_the_context_s_settings() -> None:
 
 
 class Ending:
-    """A module whose rules note how they end with the context."""
+    """A module whose rules record how they end with the context."""
 
     def __init__(self) -> None:
         self.module = rs.Module("m")
@@ -511,7 +513,7 @@ class Ending:
         return self.module.rule(when=when, **options)
 
 
-def test_rules_for_shutdown_finish_and_long_runs_are_cancelled_and_clean_up() -> None:
+def test_shutdown_lets_rules_for_shutdown_finish_and_then_cancels_other_runs() -> None:
     ending = Ending()
 
     @ending.rule(ending.go)
@@ -539,7 +541,7 @@ def test_rules_for_shutdown_finish_and_long_runs_are_cancelled_and_clean_up() ->
     assert sim.failures == []
 
 
-def test_a_rule_for_shutdown_may_be_kept_waiting_first() -> None:
+def test_a_rule_for_shutdown_runs_even_if_a_rival_first_keeps_it_waiting() -> None:
     ending = Ending()
     out = ending.module.slot("out", "")
 
@@ -592,7 +594,7 @@ def test_a_farewell_that_has_waited_for_a_long_rule_is_not_cut_off() -> None:
     assert ending.told == ["farewell"]
 
 
-def test_the_end_does_not_wait_for_a_background_loop() -> None:
+def test_shutdown_does_not_wait_for_a_background_loop() -> None:
     ending = Ending()
 
     @ending.rule(rs.startup | ending.go, emits=ending.go, detached=True, background=True)
@@ -617,7 +619,7 @@ def test_the_end_does_not_wait_for_a_background_loop() -> None:
     assert ending.told == ["farewell", "1.35 s"]
 
 
-def test_the_end_waits_for_rules_that_want_an_aged_or_detached_shutdown() -> None:
+def test_shutdown_waits_for_rules_that_need_an_age_and_for_their_detached_effects() -> None:
     ending = Ending()
 
     @ending.rule(rs.shutdown.min_age(0.5), emits=ending.then, detached=True)
@@ -635,7 +637,7 @@ def test_the_end_waits_for_rules_that_want_an_aged_or_detached_shutdown() -> Non
 
 
 @on_loop
-async def test_hanging_functions_do_not_silence_the_other_rules() -> None:
+async def test_functions_that_hang_do_not_keep_other_rules_from_running() -> None:
     ending = Ending()
     release = threading.Event()
 
@@ -657,7 +659,7 @@ async def test_hanging_functions_do_not_silence_the_other_rules() -> None:
     assert ending.told == ["spoken"]
 
 
-def test_no_rule_starts_while_the_last_running_rules_clean_up(caplog: pytest.LogCaptureFixture) -> None:
+def test_no_rule_starts_while_cancelled_rules_clean_up_at_the_end(caplog: pytest.LogCaptureFixture) -> None:
     ending = Ending()
 
     @ending.rule(ending.go, emits=ending.then)
@@ -680,7 +682,7 @@ def test_no_rule_starts_while_the_last_running_rules_clean_up(caplog: pytest.Log
     assert not caplog.records
 
 
-def test_the_other_rules_go_on_after_a_rule_has_raised_keyboard_interrupt() -> None:
+def test_other_rules_continue_after_a_rule_has_raised_keyboard_interrupt() -> None:
     ending = Ending()
 
     @ending.rule(ending.go)
@@ -702,7 +704,7 @@ def test_the_other_rules_go_on_after_a_rule_has_raised_keyboard_interrupt() -> N
         loop.run_until_complete(context.stop())
 
 
-def test_a_rule_that_ends_when_it_is_interrupted_causes_no_warning_later(
+def test_a_rule_that_ends_when_it_is_interrupted_causes_no_warning(
     caplog: pytest.LogCaptureFixture,
 ) -> None:
     ending = Ending()
@@ -718,7 +720,7 @@ def test_a_rule_that_ends_when_it_is_interrupted_causes_no_warning_later(
         assert sim.fired == ["m:long"] and not caplog.records
 
 
-def test_rules_for_shutdown_have_five_seconds() -> None:
+def test_a_rule_for_shutdown_is_cancelled_after_five_seconds() -> None:
     ending = Ending()
 
     @ending.rule(rs.shutdown)
@@ -746,7 +748,7 @@ async def test_a_plain_function_for_shutdown_finishes() -> None:
     assert ending.told == ["farewell"]
 
 
-def test_a_rule_that_refuses_to_end_is_abandoned_and_named(caplog: pytest.LogCaptureFixture) -> None:
+def test_a_rule_that_refuses_to_end_is_abandoned_and_a_warning_names_it(caplog: pytest.LogCaptureFixture) -> None:
     ending = Ending()
 
     @ending.rule(ending.go)
@@ -812,7 +814,7 @@ async def test_a_cancelled_shutdown_does_not_wait_for_rules() -> None:
 
 
 @on_loop
-async def test_writes_at_the_end_are_still_recorded() -> None:
+async def test_a_task_can_wait_for_a_write_of_a_rule_for_shutdown() -> None:
     ending = Ending()
     goodbye = ending.module.slot("goodbye", "")
 
@@ -828,7 +830,7 @@ async def test_writes_at_the_end_are_still_recorded() -> None:
 
 @pytest.mark.parametrize("who", ["rule", "plain rule", "outside", "thread"])
 @on_loop
-async def test_rules_and_threads_may_ask_to_stop(who: str) -> None:
+async def test_rules_and_other_code_in_any_thread_can_ask_the_context_to_stop(who: str) -> None:
     ending = Ending()
 
     @ending.rule(ending.go)

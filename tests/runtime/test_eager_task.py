@@ -1,4 +1,4 @@
-"""Eager tasks: cheap for a coroutine that does not wait, and like any task for one that does."""
+"""Eager tasks cost little for a coroutine that does not wait, and act like other tasks for one that waits."""
 
 import asyncio
 import contextvars
@@ -29,7 +29,7 @@ def make() -> EagerTask:
 
 
 class Host:
-    """A stand-in for a running context; these rules need nothing of it."""
+    """A stand-in for a running context. The rules of these tests do not use it."""
 
 
 def context_of(coroutine: Coroutine[Any, Any, Any]) -> RuleContext:
@@ -39,7 +39,7 @@ def context_of(coroutine: Coroutine[Any, Any, Any]) -> RuleContext:
 
 
 async def step(eager: EagerTask, coroutine: Coroutine[Any, Any, Any]) -> bool:
-    """Take the first step as the runner does: from a callback of the loop, where no task is current.
+    """Take the first step as the runner does, from a callback of the loop. There, no task is current.
 
     Return whether a task adopted the coroutine.
     """
@@ -79,7 +79,7 @@ async def test_a_coroutine_that_does_not_wait_leaves_the_task_free() -> None:
 
 
 @on_loop
-async def test_an_exception_in_the_first_step_comes_at_once() -> None:
+async def test_an_exception_in_the_first_step_is_raised_immediately() -> None:
     eager = make()
 
     async def fail() -> None:
@@ -130,7 +130,7 @@ async def test_rules_that_do_not_wait_share_one_spare_task() -> None:
 
 
 @on_loop
-async def test_a_coroutine_that_waits_is_adopted_and_goes_on() -> None:
+async def test_a_task_adopts_a_coroutine_that_waits_and_continues_it() -> None:
     eager = make()
     seen: list[object] = []
 
@@ -162,7 +162,7 @@ async def test_an_exception_after_the_coroutine_has_waited_is_raised_by_the_task
 
 
 @on_loop
-async def test_an_awaited_future_may_fail() -> None:
+async def test_the_exception_of_an_awaited_future_is_raised_in_the_coroutine() -> None:
     eager = make()
     future: asyncio.Future[None] = asyncio.get_running_loop().create_future()
 
@@ -247,7 +247,7 @@ async def test_tools_of_asyncio_work_from_the_first_step() -> None:
 
 
 @on_loop
-async def test_context_variables_live_as_long_as_the_coroutine() -> None:
+async def test_context_variables_that_a_coroutine_sets_last_until_its_end() -> None:
     eager = make()
     seen: list[str] = []
 
@@ -264,7 +264,7 @@ async def test_context_variables_live_as_long_as_the_coroutine() -> None:
 
 
 @on_loop
-async def test_a_context_variable_does_not_reach_the_next_rule() -> None:
+async def test_a_context_variable_that_a_rule_sets_does_not_reach_the_next_rule() -> None:
     m = rs.Module("m")
     go, seen = m.signal("go", str), m.slot("seen", "")
 
@@ -299,7 +299,7 @@ async def test_a_cancelled_coroutine_cleans_up(when: str) -> None:
             await asyncio.sleep(0)
             told.append("clean")
 
-    if when == "before adoption":  # the task learns of it in its first step
+    if when == "before adoption":  # the task gets the cancellation in its first step
         asyncio.get_running_loop().call_soon(lambda: (eager.first_step(context_of(work())), eager.task.cancel()))
         await asyncio.sleep(0)
     else:
@@ -333,12 +333,12 @@ async def test_a_cancellation_reaches_the_awaited_tasks(fresh: bool) -> None:
     with pytest.raises(asyncio.CancelledError):
         await eager.task
     await turns()
-    assert told in ([], ["inner", "inner"])  # tasks that have not begun clean up nothing
+    assert told in ([], ["inner", "inner"])  # a task that has not begun has nothing to clean up
     assert len(asyncio.all_tasks()) == 1
 
 
 @on_loop
-async def test_a_coroutine_may_decline_a_cancellation() -> None:
+async def test_a_coroutine_can_suppress_a_cancellation() -> None:
     eager = make()
 
     async def stubborn() -> str:
@@ -453,7 +453,7 @@ async def test_close_ends_a_spare_task_and_no_task_with_a_coroutine() -> None:
     assert await eager.task == 3
 
 
-# ---------------------------------------------------------------------------------------- the rest
+# ---------------------------------------------------------------------------------------- other behaviour
 
 
 @on_loop
@@ -469,7 +469,7 @@ async def test_sys_exit_is_passed_on_and_does_not_end_the_event_loop() -> None:
 
 
 @on_loop
-async def test_each_step_is_measured(monkeypatch: pytest.MonkeyPatch) -> None:
+async def test_the_time_of_each_step_is_measured(monkeypatch: pytest.MonkeyPatch) -> None:
     readings: list[float] = []
 
     def read() -> float:
@@ -489,7 +489,7 @@ async def test_each_step_is_measured(monkeypatch: pytest.MonkeyPatch) -> None:
 
 
 @on_loop
-async def test_a_task_that_is_thrown_away_closes_its_coroutine() -> None:
+async def test_closing_the_coroutine_of_a_task_closes_the_adopted_coroutine() -> None:
     eager = make()
     told: list[str] = []
 

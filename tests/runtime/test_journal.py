@@ -1,4 +1,4 @@
-"""A journal of a real run, fed to a fresh engine, gives the same effects (L24)."""
+"""A new engine that gets the journal of a real run has the same effects (L24)."""
 
 import asyncio
 from typing import Any
@@ -47,7 +47,7 @@ def remember(ctx: rs.RuleContext) -> None:
 
 
 async def conversation(context: rs.Context) -> None:
-    """Put one input at a time and several at once, with and without waiting, and add a rule."""
+    """Put single inputs and several inputs together, with and without waiting. Also add a rule."""
     context.put(heard, "hello")
     await context.quiet()
     context.put(heard, "why?")
@@ -81,7 +81,7 @@ def shape(effects: list[list[Effect]]) -> list[str]:
 
 
 @on_loop
-async def test_replay_repeats_the_run_to_the_letter() -> None:
+async def test_a_replay_gives_the_same_trace_and_the_same_values_as_the_run() -> None:
     policy, entries, records, seen = await recorded()
     engine = Engine(policy, patience=0.01)
     again: list[Record] = []
@@ -93,7 +93,7 @@ async def test_replay_repeats_the_run_to_the_letter() -> None:
 
 
 @on_loop
-async def test_replay_calls_nothing_and_gives_the_same_effects_each_time() -> None:
+async def test_a_replay_gives_the_same_effects_each_time() -> None:
     policy, entries, *_ = await recorded()
     first = shape(replay(Engine(policy, patience=0.01), entries))
     second = shape(replay(Engine(policy, patience=0.01), entries))
@@ -126,8 +126,7 @@ async def doubt(ctx: rs.RuleContext) -> None:
 
 @on_loop
 async def test_a_recorded_or_traced_run_makes_the_same_decisions_as_a_plain_run() -> None:
-    """Without a journal, the runner calls the engine directly, without event records. The decisions are the same
-    (L25)."""
+    """Without a journal and a trace, the runner calls the engine directly, without event records (L25)."""
 
     async def ends(**options: Any) -> list[Ended]:
         found: list[Ended] = []
@@ -150,7 +149,7 @@ async def test_a_recorded_or_traced_run_makes_the_same_decisions_as_a_plain_run(
 
 
 @on_loop
-async def test_every_event_is_kept_in_order_with_its_time() -> None:
+async def test_a_journal_has_every_event_in_order_with_its_time() -> None:
     _, entries, *_ = await recorded()
     kinds = [type(entry.event) for entry in entries]
     assert kinds[0] is Start and kinds.count(Stop) == 1 and kinds.count(AddRule) == 1
@@ -160,14 +159,14 @@ async def test_every_event_is_kept_in_order_with_its_time() -> None:
 
 
 @on_loop
-async def test_a_function_may_be_the_journal() -> None:
+async def test_a_function_can_be_the_journal() -> None:
     told: list[tuple[object, float]] = []
     async with rs.Context(m, journal=lambda event, time: told.append((event, time))) as context:
         context.emit(stop)
     assert Emit("m:stop") in [event for event, _ in told]
 
 
-def test_a_journal_keeps_events_as_they_were() -> None:
+def test_a_journal_keeps_copies_of_events() -> None:
     journal = Journal()
     event = Emit("m:stop", "before")
     journal(event, 1.0)
@@ -175,7 +174,7 @@ def test_a_journal_keeps_events_as_they_were() -> None:
     assert journal.entries == [Entry(1.0, Emit("m:stop", "before"))]
 
 
-def test_an_interrupted_run_is_interrupted_again() -> None:
+def test_a_replay_interrupts_a_run_that_was_interrupted() -> None:
     n = rs.Module("n")
     go, halt = n.signal("go"), n.signal("halt")
 
@@ -197,7 +196,7 @@ def test_an_interrupted_run_is_interrupted_again() -> None:
     assert [effect.reason for effect in effects if isinstance(effect, Cancel)] == ["interrupted"]
 
 
-def test_a_journal_written_without_a_tracer_replays_with_one_and_the_other_way_round() -> None:
+def test_a_journal_can_be_written_and_replayed_with_or_without_a_tracer() -> None:
     n = rs.Module("n")
     one, two = n.signal("one"), n.signal("two")
 

@@ -1,4 +1,4 @@
-"""Listeners: the engine reports only signals that have a listener."""
+"""The engine reports only signals that have a listener."""
 
 import asyncio
 from typing import Any
@@ -11,7 +11,7 @@ from runtime.on_loop import on_loop, turns
 
 
 @on_loop
-async def test_a_signal_is_watched_as_long_as_a_task_waits_for_it() -> None:
+async def test_a_signal_is_watched_while_a_task_waits_for_it() -> None:
     watched: dict[str, int] = {}
     listeners = Listeners(watched, {})
     one, other = (asyncio.create_task(listeners.next("m:s")) for _ in range(2))
@@ -25,7 +25,7 @@ async def test_a_signal_is_watched_as_long_as_a_task_waits_for_it() -> None:
 
 
 @on_loop
-async def test_a_task_that_gives_up_leaves_nothing_behind() -> None:
+async def test_a_cancelled_task_no_longer_watches_its_signal() -> None:
     watched: dict[str, int] = {}
     task = asyncio.create_task(Listeners(watched, {}).next("m:s"))
     await turns(1)
@@ -35,7 +35,7 @@ async def test_a_task_that_gives_up_leaves_nothing_behind() -> None:
 
 
 @on_loop
-async def test_a_function_hears_every_spike_and_stays() -> None:
+async def test_a_function_hears_every_spike_and_remains_a_listener() -> None:
     watched: dict[str, int] = {}
     heard: list[Any] = []
     listeners = Listeners(watched, {"m:s": heard.append})

@@ -1,4 +1,4 @@
-"""Plain functions that wait for a worker thread: one warning names the rules that hold the threads."""
+"""When plain functions must wait for a worker thread, one warning names the rules that occupy the threads."""
 
 import asyncio
 import functools
@@ -17,7 +17,7 @@ LIMIT = 20.0
 
 
 class Crowd:
-    """A module with functions that hang until `release` is set, and one that answers."""
+    """A module with functions that hang until `release` is set, and a function that answers."""
 
     def __init__(self) -> None:
         self.module = rs.Module("m")
@@ -38,7 +38,7 @@ class Crowd:
 
 
 class Warnings(logging.Handler):
-    """Collects the messages that ravestate logs within a ``with`` block, in a queue."""
+    """Collects the messages that ravestate logs within a ``with`` block. They go to a queue."""
 
     def __init__(self) -> None:
         super().__init__()
@@ -57,7 +57,7 @@ class Warnings(logging.Handler):
 
 @pytest.mark.parametrize("full", ["the share of the context", "the threads of the process"])
 @on_loop
-async def test_hanging_functions_that_use_up_the_workers_are_named_in_one_warning(full: str) -> None:
+async def test_one_warning_names_the_hanging_functions_that_occupy_all_workers(full: str) -> None:
     crowd = Crowd()
     with pytest.MonkeyPatch.context() as patch, Warnings() as log:
         patch.setattr(plain_rules, "JobQueue", functools.partial(JobQueue, ThreadPool()))

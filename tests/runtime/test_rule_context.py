@@ -1,4 +1,4 @@
-"""The rule context: reads, acts, and error messages that say what to write."""
+"""The rule context: its reads and acts, and error messages that say what to write."""
 
 import contextlib
 import re
@@ -29,7 +29,7 @@ class Scene:
         self.found: list[Any] = []
 
     def run(self, act: Callable[[rs.RuleContext], object], when: rs.Condition | None = None, **options: Any) -> None:
-        """Make a rule that does something once, and keep its result or its error."""
+        """Declare a rule that calls a function once. The result or the error of the function is kept."""
 
         async def doer(ctx: rs.RuleContext) -> None:
             self.found.append(act(ctx))
@@ -88,7 +88,7 @@ def test_a_rule_sees_its_own_writes_but_not_those_of_other_rules(scene: Scene) -
         ("people", "read m:people without declaring it: add reads=people"),
     ],
 )
-def test_an_undeclared_read_names_the_line_to_add(scene: Scene, slot: str, text: str) -> None:
+def test_the_error_about_an_undeclared_read_says_what_to_add(scene: Scene, slot: str, text: str) -> None:
     scene.run(lambda ctx: ctx[getattr(scene, slot)])
     failure = scene.outcome()
     assert isinstance(failure, rs.UndeclaredError) and text in str(failure)
@@ -101,7 +101,7 @@ def test_the_message_about_a_value_that_is_not_a_slot_names_the_value(scene: Sce
     assert f"read {key!r}, which is not a slot: write ctx[slot]" in str(scene.outcome())
 
 
-def test_a_signal_in_place_of_its_slot(scene: Scene) -> None:
+def test_reading_a_signal_instead_of_its_slot_is_refused(scene: Scene) -> None:
     scene.run(lambda ctx: ctx[scene.mood.changed], reads=scene.mood)
     assert "read m:mood:changed, which is not a slot" in str(scene.outcome())
 
@@ -126,14 +126,14 @@ def test_a_value_of_the_wrong_type_is_an_error_of_its_writer(scene: Scene, value
 
 
 @pytest.mark.parametrize("change", [lambda items: items.__setitem__("ada", 1), lambda items: items.__delitem__("ada")])
-def test_items_are_not_assigned(scene: Scene, change: Callable[[Any], None]) -> None:
+def test_assigning_or_deleting_an_item_of_a_collection_is_refused(scene: Scene, change: Callable[[Any], None]) -> None:
     scene.run(lambda ctx: change(ctx[scene.people]), writes=scene.people)
     failure = scene.outcome()
     assert isinstance(failure, rs.RuleError)
     assert re.search(r"write ctx\[people\]\.(add\(key, item\)|remove\(key\))$", str(failure))
 
 
-def test_a_slot_of_another_module_is_named_with_it(scene: Scene) -> None:
+def test_the_error_names_a_slot_of_another_module_together_with_its_module(scene: Scene) -> None:
     lamp = rs.Module("lamp").slot("light", "")
     scene.run(write(lamp, "x"), writes=scene.note)
     assert "write writes=(note, lamp.light) in @m.rule(...)" in str(scene.outcome())
@@ -145,7 +145,7 @@ def test_the_message_about_a_misspelt_slot_names_the_nearest(scene: Scene) -> No
     assert str(scene.outcome()).endswith("; did you mean 'm:note'?")
 
 
-def test_a_write_signals_at_once(scene: Scene) -> None:
+def test_a_write_raises_its_signals_immediately(scene: Scene) -> None:
     order: list[str] = []
 
     @scene.module.rule(when=scene.lit.true, reads=scene.lit)
@@ -199,7 +199,7 @@ def test_collections_are_mappings_with_add_and_remove(scene: Scene) -> None:
     ]  # fmt: skip
 
 
-def test_a_view_of_a_collection_keeps_the_writes_of_another_view(scene: Scene) -> None:
+def test_all_views_of_a_collection_in_a_rule_share_its_writes(scene: Scene) -> None:
     def act(ctx: rs.RuleContext) -> object:
         one, other = ctx[scene.people], ctx[scene.people]
         one.add("a", 1)
@@ -210,7 +210,7 @@ def test_a_view_of_a_collection_keeps_the_writes_of_another_view(scene: Scene) -
     assert scene.outcome() == {"a": 1, "b": 2}
 
 
-def test_a_collection_may_be_changed_during_an_iteration(scene: Scene) -> None:
+def test_a_collection_can_be_changed_during_an_iteration(scene: Scene) -> None:
     def act(ctx: rs.RuleContext) -> Any:
         people = ctx[scene.people]
         for key in "abc":
@@ -226,7 +226,7 @@ def test_a_collection_may_be_changed_during_an_iteration(scene: Scene) -> None:
     assert scene.outcome() == (["A", "B", "C"], ["a", "b", "aa", "bb", "cc"], ["A", "B", "A", "B", "C"], 5)
 
 
-def test_a_rule_does_not_see_later_changes_of_a_collection_by_others(scene: Scene) -> None:
+def test_a_rule_does_not_see_later_changes_of_a_collection_by_other_rules(scene: Scene) -> None:
     seen: list[Any] = []
 
     @scene.module.rule(when=scene.people.added, reads=scene.people)
@@ -243,7 +243,7 @@ def test_a_rule_does_not_see_later_changes_of_a_collection_by_others(scene: Scen
     scene.module.rule(when=scene.go, writes=scene.people)(fill)
 
     async def run() -> None:
-        async with rs.Context(scene.module) as context:  # which keeps no trace
+        async with rs.Context(scene.module) as context:  # unlike a simulation, this context keeps no trace
             context.emit(scene.go)
             await context.quiet()
             before = context.read(scene.people)
@@ -257,7 +257,7 @@ def test_a_rule_does_not_see_later_changes_of_a_collection_by_others(scene: Scen
 
 
 @pytest.mark.parametrize("value", [1, "yes", [], 0])
-def test_a_flag_is_read_as_it_is_written(scene: Scene, value: Any) -> None:
+def test_the_value_of_a_flag_is_always_true_or_false(scene: Scene, value: Any) -> None:
     def act(ctx: rs.RuleContext) -> Any:
         ctx[scene.lit] = value
         return ctx[scene.lit]
@@ -273,7 +273,7 @@ def test_a_collection_that_is_only_read_cannot_be_changed(scene: Scene, act: Cal
 
 
 @pytest.mark.parametrize("value", [5, ["Ada"], None, "Ada"])
-def test_a_collection_is_not_written_like_a_value(scene: Scene, value: object) -> None:
+def test_writing_anything_but_a_mapping_to_a_collection_is_refused(scene: Scene, value: object) -> None:
     scene.run(write(scene.people, value), writes=scene.people)
     failure = scene.outcome()
     assert isinstance(failure, rs.RuleError)
@@ -288,12 +288,12 @@ def test_a_collection_is_not_written_like_a_value(scene: Scene, value: object) -
 
 
 @pytest.mark.parametrize("payload", [7, 0, "", None, False])
-def test_falsy_payloads_come_through_as_they_are(scene: Scene, payload: Any) -> None:
+def test_falsy_payloads_arrive_unchanged(scene: Scene, payload: Any) -> None:
     scene.run(lambda ctx: ctx.payload(scene.go))
     assert scene.outcome(payload) is payload or scene.outcome(payload) == payload
 
 
-def test_the_payload_of_the_other_clause_is_none(scene: Scene) -> None:
+def test_the_payload_of_a_signal_of_another_clause_is_none(scene: Scene) -> None:
     scene.run(lambda ctx: (ctx.payload(scene.go), ctx.payload(scene.other)), when=scene.go | scene.other)
     assert scene.outcome(3) == (3, None)
 
@@ -367,7 +367,7 @@ def test_wiping_withdraws_and_unknown_signals_are_refused(scene: Scene) -> None:
         assert both == [] and sim.failures == []
 
 
-# ---------------------------------------------------------------------------------------- the rest of what it offers
+# ---------------------------------------------------------------------------------------- other methods
 
 
 def test_a_rule_context_has_settings_log_time_and_random_numbers(scene: Scene) -> None:
@@ -384,7 +384,7 @@ def test_a_rule_context_has_settings_log_time_and_random_numbers(scene: Scene) -
     assert scene.found == [(1.0, "hi", "ravestate.m.look", "m:look"), 3.5]
 
 
-def test_a_module_without_settings_has_none() -> None:
+def test_the_settings_of_a_module_without_settings_are_none() -> None:
     m = rs.Module("m")
     found: list[object] = []
 
@@ -396,7 +396,7 @@ def test_a_module_without_settings_has_none() -> None:
         assert found == [None]
 
 
-def test_a_rule_may_add_a_rule_and_wait_for_quiet(scene: Scene) -> None:
+def test_a_rule_can_add_a_rule_and_wait_for_quiet(scene: Scene) -> None:
     late = rs.Module("late").rule(when=scene.other, writes=scene.note, name="late")(note_late(scene))
 
     @scene.module.rule(when=scene.go, emits=scene.other, detached=True, background=True)
@@ -427,7 +427,7 @@ def test_a_rule_that_does_not_fit_cannot_be_added(scene: Scene) -> None:
     assert isinstance(failure, rs.DeclarationErrors) and "unknown signal far:x" in str(failure)
 
 
-def test_a_rule_may_write_while_it_cleans_up(scene: Scene) -> None:
+def test_a_rule_can_write_while_it_cleans_up(scene: Scene) -> None:
     @scene.module.rule(when=scene.go, writes=scene.note, until=scene.other)
     async def long(ctx: rs.RuleContext) -> None:
         try:
@@ -442,7 +442,7 @@ def test_a_rule_may_write_while_it_cleans_up(scene: Scene) -> None:
 
 
 @pytest.mark.parametrize("act", ["write", "emit", "wipe", "add"])
-def test_a_rule_context_does_nothing_after_its_run(scene: Scene, act: str) -> None:
+def test_a_rule_context_refuses_all_acts_after_its_run(scene: Scene, act: str) -> None:
     kept: list[rs.RuleContext] = []
     scene.run(kept.append, writes=(scene.note, scene.people), emits=scene.out)
     with simulate(scene.module) as sim:

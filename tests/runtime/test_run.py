@@ -1,4 +1,4 @@
-"""Running until a rule or Ctrl-C ends the agent cleanly, or a second Ctrl-C ends it at once."""
+"""An agent runs until a rule or Ctrl-C ends it cleanly. A second Ctrl-C ends it immediately."""
 
 import asyncio
 import gc
@@ -22,7 +22,7 @@ from runtime.on_loop import on_loop, turns
 LIMIT = 20
 
 
-def test_a_rule_ends_the_agent_in_order() -> None:
+def test_a_rule_can_end_the_agent_and_rules_for_shutdown_still_run() -> None:
     m = rs.Module("m")
     told: list[str] = []
 
@@ -40,7 +40,7 @@ def test_a_rule_ends_the_agent_in_order() -> None:
     assert told == ["start", "end"]
 
 
-def test_options_are_those_of_a_context() -> None:
+def test_run_takes_the_same_options_as_a_context() -> None:
     class Options(rs.Settings):
         word: str = "a"
 
@@ -101,7 +101,7 @@ def test_when_one_server_fails_the_others_end_and_the_failure_is_raised() -> Non
     assert ends == ["stay"]
 
 
-def test_an_interrupt_ends_a_server_in_order() -> None:
+def test_an_interrupt_cancels_a_server_which_can_clean_up() -> None:
     ends: list[str] = []
 
     async def stay(_: Agent) -> None:
@@ -115,7 +115,7 @@ def test_an_interrupt_ends_a_server_in_order() -> None:
     assert ends == ["stay"]
 
 
-def test_a_rule_may_end_the_agent_with_a_failure() -> None:
+def test_a_rule_can_end_the_agent_with_an_error() -> None:
     m = rs.Module("m")
     told: list[str] = []
 
@@ -149,7 +149,7 @@ def test_a_warning_says_that_no_user_can_talk_to_the_agent(caplog: pytest.LogCap
     assert "no rule writes rawio:input; name a platform too, e.g. conio" in record.getMessage()
 
 
-def test_an_agent_with_a_platform_or_without_talk_causes_no_warning(caplog: pytest.LogCaptureFixture) -> None:
+def test_an_agent_with_a_platform_or_without_rawio_causes_no_warning(caplog: pytest.LogCaptureFixture) -> None:
     rs.run(leaver())
     platform = leaver(rawio.module)
 
@@ -165,7 +165,7 @@ def test_faults_are_raised_before_anything_runs() -> None:
         rs.run("nonsense")
 
 
-def test_an_agent_runs_in_a_thread_too() -> None:
+def test_an_agent_can_run_in_a_thread() -> None:
     m = rs.Module("m")
     told: list[str] = []
 
@@ -215,7 +215,7 @@ async def test_a_cancellation_from_outside_is_not_swallowed() -> None:
 
 
 @on_loop
-async def test_a_timeout_around_a_context_or_a_server_is_a_timeout() -> None:
+async def test_a_timeout_around_a_context_or_a_server_raises_timeout_error() -> None:
     ends: list[str] = []
 
     async def stay(_: Agent) -> None:
@@ -237,7 +237,7 @@ async def test_run_in_a_running_loop_is_refused_and_leaves_no_coroutine() -> Non
         warnings.simplefilter("error")
         with pytest.raises(rs.EngineError, match=r"rs.run starts an event loop.*async with rs.Context"):
             rs.run(rs.Module("m"))
-        gc.collect()  # a coroutine that nobody awaits complains when it is deleted
+        gc.collect()  # a coroutine that was never awaited causes a warning when it is deleted
 
 
 async def _for_ever(ended: list[str]) -> None:
@@ -248,14 +248,14 @@ async def _for_ever(ended: list[str]) -> None:
 
 
 async def _end() -> None:
-    """End at once."""
+    """End immediately."""
 
 
 async def _fail() -> None:
     raise rs.PlatformError("too slow")
 
 
-def test_when_one_task_ends_the_others_end_too_and_its_error_is_raised() -> None:
+def test_when_one_task_ends_the_others_are_cancelled_and_its_error_is_raised() -> None:
     ended: list[str] = []
     asyncio.run(until_first_ends(_for_ever(ended), _end()))
     with pytest.raises(rs.PlatformError, match="too slow"):
@@ -307,7 +307,7 @@ def started(folder: Path, *arguments: str) -> subprocess.Popen[str]:
 
 
 @pytest.mark.parametrize("number", [signal.SIGINT, signal.SIGTERM])
-def test_one_signal_ends_the_agent_in_order(tmp_path: Path, number: signal.Signals) -> None:
+def test_one_operating_system_signal_ends_the_agent_cleanly(tmp_path: Path, number: signal.Signals) -> None:
     with started(tmp_path) as process:
         assert process.stdout is not None
         assert process.stdout.readline() == "running\n"
@@ -321,7 +321,7 @@ def test_one_signal_ends_the_agent_in_order(tmp_path: Path, number: signal.Signa
     ("manner", "said"),
     [("slow", ["broken off", "cleaned up", "ended"]), ("stubborn", ["cleaned up", "ended", "no"])],
 )
-def test_a_second_signal_aborts_the_shutdown(tmp_path: Path, manner: str, said: list[str]) -> None:
+def test_a_second_operating_system_signal_aborts_the_shutdown(tmp_path: Path, manner: str, said: list[str]) -> None:
     with started(tmp_path, manner) as process:
         assert process.stdout is not None
         assert process.stdout.readline() == "running\n"

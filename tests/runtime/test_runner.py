@@ -1,4 +1,4 @@
-"""The runner on a real loop: rules fail, hang or block, and the conversation goes on."""
+"""The runner on a real loop: the conversation continues even if rules fail, hang or block."""
 
 import asyncio
 import functools
@@ -73,9 +73,9 @@ class Strange(BaseException):
 
 
 def raising(error: BaseException, where: str) -> Any:
-    """Return a rule function that raises at once, after waiting, or in a thread."""
+    """Return a rule function that raises an error immediately, after waiting, or in a thread."""
 
-    async def at_once(ctx: rs.RuleContext) -> None:
+    async def immediately(ctx: rs.RuleContext) -> None:
         raise error
 
     async def later(ctx: rs.RuleContext) -> None:
@@ -85,10 +85,10 @@ def raising(error: BaseException, where: str) -> Any:
     def in_thread(ctx: rs.RuleContext) -> None:
         raise error
 
-    return {"at once": at_once, "later": later, "in a thread": in_thread}[where]
+    return {"immediately": immediately, "later": later, "in a thread": in_thread}[where]
 
 
-WHERE = pytest.mark.parametrize("where", ["at once", "later", "in a thread"])
+WHERE = pytest.mark.parametrize("where", ["immediately", "later", "in a thread"])
 
 
 @WHERE
@@ -96,7 +96,9 @@ WHERE = pytest.mark.parametrize("where", ["at once", "later", "in a thread"])
     "error", [ValueError("broken"), Strange("odd"), asyncio.CancelledError(), TimeoutError(), GeneratorExit()]
 )
 @on_loop
-async def test_a_rule_that_raises_is_logged_once_and_the_next_best_answers(error: BaseException, where: str) -> None:
+async def test_a_rule_that_raises_an_error_is_logged_once_and_the_next_best_rule_answers(
+    error: BaseException, where: str
+) -> None:
     talk = Talk()
     talk.rule(raising(error, where), name="fails")
     handler = Records()
@@ -108,7 +110,7 @@ async def test_a_rule_that_raises_is_logged_once_and_the_next_best_answers(error
             (record,) = handler.records
             assert record.levelno == logging.ERROR and record.getMessage().startswith("rule m:fails failed: ")
             assert record.exc_info is not None and record.exc_info[1] is failure
-            assert await talk.ask(context) == "fallback"  # and the conversation goes on
+            assert await talk.ask(context) == "fallback"  # the conversation continues
 
 
 def test_an_error_handler_that_takes_too_long_causes_no_further_error() -> None:
@@ -144,7 +146,7 @@ def test_the_trace_has_the_line_in_which_a_rule_failed() -> None:
 
     @module.rule(when=slow)
     def parse(ctx: rs.RuleContext) -> None:
-        int("twelve")  # raised by built-in code, which has no file
+        int("twelve")  # built-in code raises this error, and has no file
 
     with simulate(module) as sim:
         sim.emit(go)
@@ -159,7 +161,7 @@ def test_the_trace_has_the_line_in_which_a_rule_failed() -> None:
 @on_loop
 async def test_a_platform_error_is_logged_without_a_traceback() -> None:
     talk = Talk()
-    talk.rule(raising(rs.PlatformError("no microphone: plug one in"), "at once"), name="hears")
+    talk.rule(raising(rs.PlatformError("no microphone: plug one in"), "immediately"), name="hears")
     with Records() as log:
         async with rs.Context(talk.module) as context:
             assert await talk.ask(context) == "fallback"
@@ -207,7 +209,7 @@ async def test_sys_exit_does_not_end_the_process(where: str) -> None:
 def test_a_keyboard_interrupt_ends_the_context_and_its_task() -> None:
     talk = Talk()
     ended: list[bool] = []
-    talk.rule(raising(KeyboardInterrupt(), "at once"), name="interrupts")
+    talk.rule(raising(KeyboardInterrupt(), "immediately"), name="interrupts")
 
     async def main() -> None:
         try:
@@ -300,7 +302,7 @@ async def test_after_a_rule_that_fails_after_writing_no_other_rule_answers() -> 
 @pytest.mark.parametrize("outcome", [rs.Resign("not now"), rs.Retire("enough")])
 @pytest.mark.parametrize("how", ["return", "raise"])
 @on_loop
-async def test_outcomes_may_be_returned_or_raised(outcome: Any, how: str) -> None:
+async def test_outcomes_can_be_returned_or_raised(outcome: Any, how: str) -> None:
     talk = Talk()
 
     async def decide(ctx: rs.RuleContext) -> Any:
@@ -320,7 +322,7 @@ async def test_outcomes_may_be_returned_or_raised(outcome: Any, how: str) -> Non
 
 
 @on_loop
-async def test_a_predicate_that_fails_is_named_and_counts_as_false() -> None:
+async def test_an_error_names_a_predicate_that_fails_and_it_counts_as_false() -> None:
     talk = Talk()
 
     async def picky(ctx: rs.RuleContext) -> None:
@@ -378,7 +380,9 @@ def test_the_last_writes_of_a_cancelled_rule_come_before_those_of_its_successor(
     async def smile(ctx: rs.RuleContext) -> None:
         ctx[face] = "happy"
         try:
-            await asyncio.wait_for(ctx.sleep(3.0), 60.0)  # here a cancellation takes some turns of the loop
+            await asyncio.wait_for(
+                ctx.sleep(3.0), 60.0
+            )  # with `wait_for`, a cancellation takes several turns of the loop
         finally:
             ctx[face] = "calm"
 
@@ -397,7 +401,7 @@ def test_the_last_writes_of_a_cancelled_rule_come_before_those_of_its_successor(
         assert faces == ["happy", "calm", "happy", "calm"]
 
 
-def test_a_cancelled_rule_that_waits_delays_no_other_rule() -> None:
+def test_a_cancelled_rule_that_cleans_up_slowly_delays_no_other_rule() -> None:
     m = rs.Module("m")
     go, stop, note = m.signal("go"), m.signal("stop"), m.slot("note", "")
 
@@ -452,7 +456,7 @@ async def test_a_plain_function_runs_in_a_thread() -> None:
     def slow(ctx: rs.RuleContext) -> None:
         threads.append(threading.get_ident())
         ctx[talk.said] = ctx.payload(talk.heard.changed).upper()
-        assert ctx[talk.said] == "HELLO"  # its own write
+        assert ctx[talk.said] == "HELLO"  # the rule sees its own write
         ctx.emit(talk.word)
 
     talk.rule(slow, emits=talk.word)
@@ -464,7 +468,7 @@ async def test_a_plain_function_runs_in_a_thread() -> None:
 
 @pytest.mark.parametrize("how", ["return", "raise"])
 @on_loop
-async def test_a_plain_function_may_resign(how: str) -> None:
+async def test_a_plain_function_can_resign(how: str) -> None:
     talk = Talk()
 
     def resigns(ctx: rs.RuleContext) -> rs.Resign:
@@ -516,7 +520,7 @@ def plain_with_more(word: str, ctx: rs.RuleContext) -> None:
     ],
 )
 @on_loop
-async def test_a_partial_an_object_or_a_method_may_be_an_async_rule(function: Any) -> None:
+async def test_a_partial_an_object_or_a_method_can_be_an_async_rule(function: Any) -> None:
     talk = Talk()
     rule = talk.rule(function, name="greets")
     assert rule.is_async
@@ -527,7 +531,7 @@ async def test_a_partial_an_object_or_a_method_may_be_an_async_rule(function: An
 
 @pytest.mark.parametrize("function", [functools.partial(plain_with_more, "word"), Caller(), Caller().__call__])
 @on_loop
-async def test_a_partial_an_object_or_a_method_may_be_a_plain_rule(function: Any) -> None:
+async def test_a_partial_an_object_or_a_method_can_be_a_plain_rule(function: Any) -> None:
     talk = Talk()
     rule = talk.rule(function, name="calls")
     assert not rule.is_async
@@ -537,8 +541,8 @@ async def test_a_partial_an_object_or_a_method_may_be_a_plain_rule(function: Any
 
 
 @on_loop
-async def test_wiping_the_signal_of_a_plain_partial_does_not_end_it() -> None:
-    """The engine knows that the rule is a plain function. Its thread cannot be stopped, so the run goes on."""
+async def test_wiping_its_signal_does_not_end_the_run_of_a_plain_partial() -> None:
+    """The engine knows that the rule is a plain function. Its thread cannot be stopped, so the run continues."""
     talk = Talk()
     begun, release = threading.Event(), threading.Event()
 
@@ -559,7 +563,7 @@ async def test_wiping_the_signal_of_a_plain_partial_does_not_end_it() -> None:
 
 
 @on_loop
-async def test_a_plain_function_that_hangs_is_abandoned_and_may_not_act_later() -> None:
+async def test_a_plain_function_that_hangs_is_abandoned_and_its_later_acts_are_refused() -> None:
     talk = Talk()
     release = threading.Event()
     told: asyncio.Queue[BaseException] = asyncio.Queue()
@@ -577,7 +581,7 @@ async def test_a_plain_function_that_hangs_is_abandoned_and_may_not_act_later() 
             except rs.RunEnded as error:
                 loop.call_soon_threadsafe(told.put_nowait, error)
 
-    talk.rule(hang, emits=talk.word, timeout=0.1)  # so long that a thread has begun
+    talk.rule(hang, emits=talk.word, timeout=0.1)  # long enough for a thread to begin
     async with rs.Context(talk.module) as context:
         assert await talk.ask(context) == "fallback"
         failure = only_failure(talk)
@@ -610,7 +614,7 @@ async def test_an_interrupted_plain_function_is_abandoned() -> None:
 
 
 @on_loop
-async def test_the_end_does_not_wait_for_a_plain_function_that_hangs() -> None:
+async def test_the_context_ends_without_waiting_for_a_plain_function_that_hangs() -> None:
     talk = Talk()
     release, begun = threading.Event(), asyncio.Event()
     over: asyncio.Queue[str] = asyncio.Queue()
@@ -668,7 +672,7 @@ async def test_an_async_rule_that_hangs_is_cancelled_at_its_timeout() -> None:
         assert told == ["clean"]
 
 
-def test_a_rule_that_refuses_to_end_is_given_up() -> None:
+def test_a_rule_that_refuses_to_end_is_abandoned_after_five_seconds() -> None:
     talk = Talk()
     told: list[str] = []
 
@@ -705,7 +709,7 @@ def test_a_rule_that_refuses_to_end_is_given_up() -> None:
         assert told == ["rule m:stubborn acted after its run was over (it did not end in time)"]
 
 
-# ---------------------------------------------------------------------------------------- much, large
+# ---------------------------------------------------------------------------------------- load
 
 
 @pytest.mark.parametrize("thread", [False, True])
@@ -734,8 +738,8 @@ async def test_a_payload_of_ten_megabytes_is_not_copied(thread: bool) -> None:
 
 
 @on_loop
-async def test_a_rule_that_causes_itself_does_not_starve_the_event_loop() -> None:
-    """A detached rule that causes itself for ever delays neither timers nor input."""
+async def test_a_rule_that_triggers_itself_does_not_starve_the_event_loop() -> None:
+    """Input and timers are handled even if a detached rule triggers itself for ever."""
     m = rs.Module("m")
     tick, enough = m.signal("tick", keep="latest"), m.signal("enough")
     count = [0]
@@ -759,7 +763,7 @@ async def test_a_rule_that_causes_itself_does_not_starve_the_event_loop() -> Non
 
 @pytest.mark.parametrize("thread", [False, True])
 @on_loop
-async def test_two_detached_rules_that_raise_each_other_silence_neither_input_nor_timers(
+async def test_two_detached_rules_that_trigger_each_other_delay_neither_input_nor_timers(
     thread: bool,
 ) -> None:
     m = rs.Module("m")
@@ -807,7 +811,7 @@ async def test_two_detached_rules_that_raise_each_other_silence_neither_input_no
 
 @on_loop
 async def test_slow_rules_that_trigger_each_other_do_not_starve_the_event_loop() -> None:
-    """The event loop gets a turn after some time, even if the rules ran few times."""
+    """The event loop gets a turn after a short time, even if only a few rules have run."""
     m = rs.Module("m")
     tick, count = m.signal("tick", keep="latest"), [0]
 

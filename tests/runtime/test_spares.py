@@ -1,4 +1,4 @@
-"""The spare task of a loop: shared by contexts, one at a time."""
+"""All contexts of an event loop share one spare task. Only one rule uses it at a time."""
 
 import asyncio
 import contextvars
@@ -19,7 +19,7 @@ async def answer(ctx: rs.RuleContext) -> None:
 
 
 async def ask(context: rs.Context) -> tuple[object, str]:
-    """Return the task that counts as current in a rule, and a context variable there."""
+    """Return the current task inside a rule, and the value of a context variable there."""
     context.emit(asked)
     found = await context.next(answered)
     assert isinstance(found, tuple)
@@ -34,7 +34,7 @@ async def test_contexts_share_one_spare_task() -> None:
 
 
 @on_loop
-async def test_a_rule_has_the_context_variables_of_its_context_s_start() -> None:
+async def test_a_rule_has_the_context_variables_with_which_its_context_started() -> None:
     async with rs.Context(m) as one:
         shade.set("blue")
         async with rs.Context(m) as other:
@@ -53,7 +53,7 @@ async def test_the_last_context_ends_the_spare_task() -> None:
 
 
 @on_loop
-async def test_a_spare_task_that_is_in_use_is_not_lent_twice() -> None:
+async def test_a_spare_task_that_is_in_use_is_not_given_to_a_second_rule() -> None:
     spares = Spares.join(asyncio.get_running_loop())
     variables = contextvars.copy_context()
     one, other = spares.take(variables), spares.take(variables)
@@ -69,7 +69,7 @@ async def test_a_spare_task_that_is_in_use_is_not_lent_twice() -> None:
 
 
 class Vector:
-    """A value whose comparison fails, as that of an array does."""
+    """A value whose comparison raises an error, like that of an array."""
 
     __hash__ = None  # type: ignore[assignment]
 
@@ -78,7 +78,7 @@ class Vector:
 
 
 @on_loop
-async def test_context_variables_need_not_be_comparable() -> None:
+async def test_context_variables_can_have_values_that_cannot_be_compared() -> None:
     held: contextvars.ContextVar[Vector] = contextvars.ContextVar("held")
     held.set(Vector())
     async with rs.Context(m) as one:
@@ -88,7 +88,7 @@ async def test_context_variables_need_not_be_comparable() -> None:
 
 
 @on_loop
-async def test_a_rule_may_set_a_context_variable_that_is_not_comparable() -> None:
+async def test_a_rule_can_set_a_context_variable_to_a_value_that_cannot_be_compared() -> None:
     held: contextvars.ContextVar[Vector] = contextvars.ContextVar("held")
     held.set(Vector())
     setter = rs.Module("setter")
@@ -96,7 +96,7 @@ async def test_a_rule_may_set_a_context_variable_that_is_not_comparable() -> Non
 
     @setter.rule(when=go, writes=done)
     async def replace(ctx: rs.RuleContext) -> None:
-        """Leave a value in the spare task."""
+        """Set a context variable in the spare task."""
         held.set(Vector())
         ctx[done] += 1
 

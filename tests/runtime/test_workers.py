@@ -1,4 +1,4 @@
-"""Worker threads: started on demand, kept for a while, and they do not keep the process from ending."""
+"""Worker threads start on demand and are kept for a while. They do not keep the process from ending."""
 
 import functools
 import subprocess
@@ -16,7 +16,7 @@ LIMIT = 20.0
 
 
 def finished(jobs: JobQueue, job: Callable[[], None] = lambda: None) -> threading.Thread:
-    """Do a job, and return the thread that did it."""
+    """Do a job, and return the thread that has done it."""
     done: SimpleQueue[threading.Thread] = SimpleQueue()
 
     def work() -> None:
@@ -41,9 +41,9 @@ def test_jobs_run_in_named_daemon_threads() -> None:
     assert ended(thread)
 
 
-def test_the_pool_starts_a_thread_when_all_are_busy() -> None:
+def test_the_pool_starts_a_thread_when_all_threads_are_busy() -> None:
     jobs = JobQueue(ThreadPool())
-    together = threading.Barrier(4)  # no thread passes it alone
+    together = threading.Barrier(4)  # all threads must arrive before any of them can pass
     done: SimpleQueue[str] = SimpleQueue()
 
     def meet() -> None:
@@ -57,7 +57,7 @@ def test_the_pool_starts_a_thread_when_all_are_busy() -> None:
     jobs.close()
 
 
-def test_a_hanging_thread_delays_no_other_job() -> None:
+def test_a_job_that_hangs_delays_no_other_job() -> None:
     jobs = JobQueue(ThreadPool())
     release = threading.Event()
     begun = threading.Event()
@@ -79,14 +79,14 @@ def test_an_idle_thread_is_used_again_even_by_another_context() -> None:
     pool = ThreadPool()
     several = [JobQueue(pool), JobQueue(pool)]
     seen = {finished(several[number % 2]) for number in range(200)}
-    assert len(seen) <= 2  # one thread may not be idle yet when the next job comes
+    assert len(seen) <= 2  # the first thread is perhaps not idle yet when the next job comes
     several[0].close()
     seen.add(finished(several[1]))
     several[1].close()
     assert all(ended(thread) for thread in seen)
 
 
-def test_no_context_takes_more_than_its_share() -> None:
+def test_no_context_occupies_more_threads_than_its_share() -> None:
     pool = ThreadPool()
     greedy, modest = JobQueue(pool), JobQueue(pool)
     release = threading.Event()
@@ -108,7 +108,7 @@ def test_no_context_takes_more_than_its_share() -> None:
     modest.close()
 
 
-def test_the_next_job_takes_the_place_of_an_abandoned_one() -> None:
+def test_the_next_job_takes_the_place_of_an_abandoned_job() -> None:
     jobs = JobQueue(ThreadPool())
     release = threading.Event()
     done: SimpleQueue[str] = SimpleQueue()
@@ -127,7 +127,7 @@ def test_the_next_job_takes_the_place_of_an_abandoned_one() -> None:
     release.set()
     assert [done.get(timeout=LIMIT) for _ in range(SHARE + 1)] == ["hung"] * (SHARE + 1)
     for _ in range(3 * SHARE):
-        finished(jobs)  # the share is as large as before
+        finished(jobs)  # the context still gets its full share of threads
     jobs.close()
 
 
@@ -169,7 +169,9 @@ def test_jobs_that_have_not_begun_are_dropped_when_their_context_ends() -> None:
     assert done.empty()
 
 
-def test_without_a_new_thread_a_job_waits_for_an_old_one_or_fails(monkeypatch: pytest.MonkeyPatch) -> None:
+def test_if_no_thread_can_be_started_a_job_waits_for_an_existing_thread_or_fails(
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
     jobs = JobQueue(ThreadPool())
     with monkeypatch.context() as patch:
         patch.setattr(threading.Thread, "start", Mock(side_effect=RuntimeError("can't start new thread")))
@@ -190,7 +192,7 @@ def test_without_a_new_thread_a_job_waits_for_an_old_one_or_fails(monkeypatch: p
     jobs.close()
 
 
-def test_the_end_of_the_process_waits_a_while_for_functions_at_work() -> None:
+def test_the_process_waits_only_for_a_while_for_running_functions_before_it_ends() -> None:
     program = """
 import threading
 from ravestate.runtime import workers

@@ -119,7 +119,7 @@ def qa_resigns(play: Play) -> None:
 
 
 def slow_cause(play: Play) -> None:
-    """4. While the classifier runs for 2 s, `Wildtalk` waits, `core:pressure` is true, and a filler may speak."""
+    """4. While the classifier runs for 2 s, `Wildtalk` waits, `core:pressure` is true, and a filler can speak."""
     m, _ = dialogue(takes=2.0)
     talker(m, "Filler", rs.pressure.true.min_age(0.8), hears=False, background=True)
     for text, answer in (
@@ -140,8 +140,10 @@ def slow_cause(play: Play) -> None:
 
 
 def fusion(play: Play) -> None:
-    """5. `Fused` answers if a gesture comes 300 ms after the words. Without a gesture, `Speech` answers after the
-    patience."""
+    """5. `Fused` answers if a gesture follows the words after 300 ms.
+
+    Without a gesture, `Speech` answers after the patience.
+    """
     for patience, own in ((1.0, None), (2.5, None), (1.0, 0.4)):
         m = rs.Module("m", requires=[rawio])
         point = m.signal("point")
@@ -162,8 +164,10 @@ def fusion(play: Play) -> None:
 
 
 def prompt_loop(play: Play) -> None:
-    """6. In silence, the agent asks again 10 s plus the patience after each prompt. After an answer, only `Answered`
-    fires, and only once."""
+    """6. While the user is silent, the agent asks again 10 s plus the patience after each prompt.
+
+    After an answer, only `Answered` fires, and only once.
+    """
     m = rs.Module("m", requires=[rawio])
     prompted = m.signal("prompted")
 
@@ -254,7 +258,7 @@ def burst(play: Play) -> None:
 
 
 def live_objects() -> int:
-    """Count the spikes, activations and groups that Python still keeps."""
+    """Count the spikes, activations and groups that are still in memory."""
     gc.collect()
     # `isinstance` could run the code of an object.
     return sum(type(one) in (Spike, Activation, Group) for one in gc.get_objects())

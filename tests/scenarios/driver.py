@@ -164,7 +164,7 @@ class Driver:
     def _begin(self, effect: Run) -> None:
         try:
             result = effect.rule.function(View(self, effect))
-        except Exception as raised:  # a rule may raise any exception
+        except Exception as raised:  # a rule can raise any exception
             self._finish(effect.run, raised)
             return
         if iscoroutine(result):
@@ -203,7 +203,7 @@ class Driver:
 
 
 class View:
-    """The argument of a rule function. It has those methods of `rs.RuleContext` that need only the engine."""
+    """The argument of a rule function. It has the methods of `rs.RuleContext` for which the engine is enough."""
 
     def __init__(self, driver: Driver, effect: Run) -> None:
         self._driver = driver

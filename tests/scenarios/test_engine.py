@@ -7,5 +7,5 @@ from scenarios.driver import Driver
 
 
 @pytest.mark.parametrize("behaviour", BEHAVIOURS, ids=lambda behaviour: behaviour.__name__)
-def test_on_the_bare_engine(behaviour: Play) -> None:
+def test_the_behaviour_on_the_bare_engine(behaviour: Play) -> None:
     behaviour(Driver)

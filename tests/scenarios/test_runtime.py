@@ -7,5 +7,5 @@ from scenarios.behaviours import BEHAVIOURS, Play
 
 
 @pytest.mark.parametrize("behaviour", BEHAVIOURS, ids=lambda behaviour: behaviour.__name__)
-def test_on_the_runtime(behaviour: Play) -> None:
+def test_the_behaviour_on_the_runtime(behaviour: Play) -> None:
     behaviour(simulate)

@@ -1,4 +1,4 @@
-"""Endless loops and endless waits: an error names a loop, or the engine prevents it."""
+"""Rules that could loop or wait without end: either an error names the loop, or the engine prevents it."""
 
 import asyncio
 import threading
@@ -21,7 +21,7 @@ def test_the_error_names_the_rule_of_a_loop_without_a_minimum_age() -> None:
         sim.emit(a)
 
 
-def test_a_rule_that_requires_no_pressure_runs_after_it_has_waited() -> None:
+def test_a_rule_that_requires_that_there_is_no_pressure_runs_after_a_wait() -> None:
     m = rs.Module("m")
     x, y, out = m.signal("x"), m.signal("y"), m.slot("out", "")
 

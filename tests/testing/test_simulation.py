@@ -40,7 +40,7 @@ def talk() -> rs.Module:
 
 
 def clock() -> tuple[rs.Module, rs.Signal[Any], list[float]]:
-    """Return a module, its only signal, and an empty list in which its rules can note times."""
+    """Return a module, its only signal, and an empty list to which its rules can add times."""
     module = rs.Module("clock")
     return module, module.signal("go"), []
 
@@ -297,7 +297,7 @@ def test_advance_settles_before_and_after_and_stops_at_the_exact_time() -> None:
         assert sim.now == 2.125
 
 
-def test_advancing_in_parts_has_the_same_effect_as_advancing_at_once() -> None:
+def test_advancing_in_parts_has_the_same_effect_as_one_advance() -> None:
     def times(parts: list[float]) -> list[float]:
         module, go, at = clock()
 
@@ -370,7 +370,7 @@ def test_say_without_rawio_raises_an_error_that_names_rawio() -> None:
         sim.say("hello")
 
 
-def test_simulate_raises_declaration_faults_at_once() -> None:
+def test_simulate_immediately_raises_the_faults_of_declarations() -> None:
     with pytest.raises(rs.DeclarationErrors):
         simulate(rs.Module("a"), rs.Module("a"))
     with pytest.raises(rs.DeclarationErrors):

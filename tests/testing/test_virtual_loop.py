@@ -61,7 +61,7 @@ def test_the_loop_runs_a_coroutine_to_its_end(loop: VirtualLoop) -> None:
     assert loop.run_until_complete(work()) == 3600.0
 
 
-def test_waiting_for_an_event_that_never_comes_is_an_error(loop: VirtualLoop) -> None:
+def test_waiting_for_an_event_that_never_comes_raises_an_error(loop: VirtualLoop) -> None:
     async def wait() -> None:
         await loop.create_future()
 
@@ -106,7 +106,7 @@ def test_the_loop_waits_for_busy_threads_only_up_to_a_limit_and_only_once(
 def test_the_loop_waits_longer_for_a_function_that_computes_than_for_one_that_waits(
     loop: VirtualLoop, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    """A function that computes may need longer on a slow machine. This must not change the result."""
+    """On a slow machine, a function that computes needs longer. This must not change the result."""
     monkeypatch.setattr(virtual_loop, "REAL_LIMIT", 0.001)
     busy, readings = ["m:learn"], 0
 

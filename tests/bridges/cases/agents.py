@@ -56,7 +56,7 @@ noticed = listener.slot("noticed", 0)
 
 @listener.rule(when=rawio.input.changed, reads=(rawio.heard, captions, noticed), writes=rawio.output)
 async def tell(ctx: rs.RuleContext) -> None:
-    """Say what the user heard, the newest caption of their speech, and the number of `typing` signals."""
+    """Say what the user has heard, the newest caption of their speech, and the number of `typing` signals."""
     ctx[rawio.output] = f"heard {ctx[rawio.heard]!r}, captions {ctx[captions]!r}, speech {ctx[noticed]}"
 
 
@@ -107,7 +107,7 @@ broken = rs.Module("broken", requires=[rawio])
 
 @broken.rule(when=rawio.input.changed, writes=rawio.output, emits=rawio.piece)
 async def fail(ctx: rs.RuleContext) -> None:
-    """Fail at once; if the user said "go on", fail in the middle of an utterance."""
+    """Fail immediately; if the user said "go on", fail in the middle of an utterance."""
     if ctx.payload(rawio.input.changed) == "go on":
         ctx.emit(rawio.piece, "I know that")
     raise PlatformError("the library is closed")
@@ -126,7 +126,7 @@ leaver = rs.Module("leaver", requires=[rawio])
 
 @leaver.rule(when=rs.startup, writes=rawio.output)
 async def leave(ctx: rs.RuleContext) -> None:
-    """Speak without being asked, and end the conversation."""
+    """Speak first, and end the conversation."""
     await ctx.sleep(0.01)
     ctx[rawio.output] = "I have to go."
     ctx.stop()

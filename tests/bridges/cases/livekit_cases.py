@@ -95,7 +95,7 @@ async def test_the_agent_answers_neither_instructions_nor_old_messages() -> None
         assert [item.text_content for item in result.chat_items if isinstance(item, ChatMessage)] == ["You said new"]
 
 
-async def test_two_simultaneous_replies_are_not_mixed_up() -> None:
+async def test_two_simultaneous_replies_stay_separate() -> None:
     async with session_with(agents.talker) as session:
         handles = [session.generate_reply(user_input=words) for words in ("count", "count again")]
         for handle in handles:
@@ -134,7 +134,9 @@ async def test_the_agent_knows_which_of_its_words_the_user_heard() -> None:
         assert await answers(session, "count") == ["One, two, three."]
         assert (await items.next()).text_content == "One, two, three."
         loudspeaker.most = len("One, two,")
-        handle = session.generate_reply(user_input="count again")  # the rule ends at once; speaking takes longer
+        handle = session.generate_reply(
+            user_input="count again"
+        )  # the rule ends immediately, and speaking takes longer
         await loudspeaker.stopped.wait()
         await session.interrupt()
         await handle
@@ -145,7 +147,7 @@ async def test_the_agent_knows_which_of_its_words_the_user_heard() -> None:
     assert loudspeaker.played == ["One, two, three.", "One, two,", "You heard 'One, two,'"]
 
 
-async def test_many_simultaneous_sessions_are_not_mixed_up() -> None:
+async def test_many_simultaneous_sessions_stay_separate() -> None:
     policy = rs.compile(agents.echo)
 
     async def talk(n: int) -> list[str]:
@@ -164,7 +166,7 @@ async def test_the_agent_greets_its_user() -> None:
         assert (await Items(session).next()).text_content == "Welcome!"
 
 
-async def test_an_agent_speaks_unasked_and_ends_the_session() -> None:
+async def test_an_agent_can_speak_unprompted_and_end_the_session() -> None:
     async with session_with(agents.leaver) as session:
         items, closed = Items(session), event_of(session, "close")
         assert (await items.next()).text_content == "I have to go."
@@ -212,7 +214,7 @@ async def test_the_end_of_the_session_does_not_wait_for_an_unfinished_utterance(
 
 
 @pytest.mark.parametrize("form", ["file", "module", "several", "policy", "context"])
-async def test_the_agent_may_be_a_file_a_module_a_list_a_policy_or_a_context(form: str, tmp_path: Path) -> None:
+async def test_the_agent_can_be_a_file_a_module_a_list_a_policy_or_a_context(form: str, tmp_path: Path) -> None:
     file = tmp_path / "agent.yaml"
     (tmp_path / "parrot.py").write_text("from agents import echo\n")
     file.write_text("modules: [./parrot.py]\n")

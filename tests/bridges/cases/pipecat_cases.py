@@ -298,7 +298,7 @@ async def test_the_agent_greets_its_user_and_says_goodbye() -> None:
     assert texts(down) == ["Welcome!", "Goodbye!"]
 
 
-async def test_an_agent_speaks_unasked_and_ends_the_pipeline() -> None:
+async def test_an_agent_can_speak_unprompted_and_end_the_pipeline() -> None:
     down, up = await run(agents.leaver, send_end_frame=False)
     assert texts(down) == ["I have to go."]
     assert up == []
@@ -327,7 +327,7 @@ async def test_a_cancelled_pipeline_stops_the_agent() -> None:
         await context.next(rawio.output.changed)
 
 
-async def test_many_simultaneous_sessions_are_not_mixed_up() -> None:
+async def test_many_simultaneous_sessions_stay_separate() -> None:
     policy = rs.compile(agents.echo, agents.listener)
     talks = await asyncio.gather(*(run(policy, said(f"{n}"), said(f"{n}, {n}")) for n in range(40)))
     for n, (down, _) in enumerate(talks):
@@ -335,7 +335,7 @@ async def test_many_simultaneous_sessions_are_not_mixed_up() -> None:
 
 
 @pytest.mark.parametrize("form", ["file", "module", "several", "policy", "context"])
-async def test_the_agent_may_be_a_file_a_module_a_list_a_policy_or_a_context(form: str, tmp_path: Path) -> None:
+async def test_the_agent_can_be_a_file_a_module_a_list_a_policy_or_a_context(form: str, tmp_path: Path) -> None:
     file = tmp_path / "agent.yaml"
     file.write_text("modules: [hibye]\n")
     forms: dict[str, AnyAgent] = {

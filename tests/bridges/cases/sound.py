@@ -1,4 +1,4 @@
-"""A voice and a loudspeaker for LiveKit's tests. A character sounds for 10 ms; each sample is its code point."""
+"""A voice and a loudspeaker for LiveKit's tests. Each character sounds for 10 ms. Its samples are its code point."""
 
 import asyncio
 import time

@@ -37,7 +37,7 @@ def load(config):
 
 @pytest.fixture
 def backend(tmp_path: Path) -> Backend:
-    """A backend that obeys."""
+    """A backend program that does what each request says."""
     (tmp_path / "obedient.py").write_text(BACKEND)
     return Backend(tmp_path / "obedient.py", "voiceio", "obedient", lambda reason: f" ({len(reason)} letters)")
 
@@ -49,14 +49,14 @@ def process(backend: Backend) -> Iterator[ModelProcess]:
     one.close()
 
 
-def test_a_process_answers_with_data_of_any_size(process: ModelProcess) -> None:
+def test_requests_and_answers_can_have_data_of_any_size(process: ModelProcess) -> None:
     data = bytes(range(256)) * 4000  # more than a pipe holds
     answer, back = process.request({"do": "turn"}, data, seconds=20)
     assert answer["said"] == "turn" and back == data[::-1]
     assert process.request({"do": "again"}, seconds=20)[0]["pid"] == answer["pid"] == process.pid
 
 
-def test_a_fault_is_reported_and_the_process_goes_on(process: ModelProcess) -> None:
+def test_an_exception_in_the_model_is_reported_and_its_process_continues(process: ModelProcess) -> None:
     with pytest.raises(PlatformError, match="obedient failed: ValueError: too loud"):
         process.request({"do": "fail"}, seconds=20)
     pid = process.pid
@@ -75,7 +75,7 @@ def test_a_process_that_hangs_is_replaced(process: ModelProcess) -> None:
         os.kill(hanging, 0)
 
 
-def test_a_stopped_process_is_replaced_even_if_it_does_not_read(process: ModelProcess) -> None:
+def test_a_stopped_process_that_reads_no_data_is_replaced(process: ModelProcess) -> None:
     process.start()
     assert process.pid is not None
     os.kill(process.pid, signal.SIGSTOP)
@@ -95,14 +95,14 @@ def test_a_process_that_dies_is_replaced(process: ModelProcess) -> None:
     assert process.restarts == 1
 
 
-def test_a_model_that_cannot_be_loaded_says_why(backend: Backend) -> None:
+def test_the_error_says_why_a_model_cannot_be_loaded(backend: Backend) -> None:
     process = ModelProcess(backend, {"broken": True})
     with pytest.raises(PlatformError, match=r"cannot load obedient: ValueError: the file is damaged \(31 letters\)$"):
         process.start()
     process.close()
 
 
-def test_an_interpreter_that_is_missing_is_named(backend: Backend) -> None:
+def test_the_error_names_a_missing_interpreter(backend: Backend) -> None:
     with pytest.raises(PlatformError, match="cannot start '/none/python'"):
         ModelProcess(backend, {}, "/none/python").start()
 
@@ -142,7 +142,7 @@ def test_an_unused_process_is_kept_for_the_next_user(backend: Backend, monkeypat
     assert two.pid is None
 
 
-def test_a_process_that_nobody_uses_again_ends(backend: Backend, monkeypatch: pytest.MonkeyPatch) -> None:
+def test_a_process_that_stays_unused_ends(backend: Backend, monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr(model_process, "LINGER", 0.0)
     one = model_process.take(backend, {"c": 1})
     one.start()
@@ -159,7 +159,7 @@ def test_a_process_that_nobody_uses_again_ends(backend: Backend, monkeypatch: py
 
 
 def test_unused_processes_end_with_the_interpreter(backend: Backend) -> None:
-    """This holds even while the timer that would end them is running."""
+    """They end even if the timer that would end them later is still running."""
     program = (
         "import sys, pathlib\n"
         "from ravestate.modules._children import process\n"
@@ -177,8 +177,8 @@ def test_unused_processes_end_with_the_interpreter(backend: Backend) -> None:
         os.kill(int(done.stdout), 0)
 
 
-def test_a_request_that_is_unwanted_when_its_turn_comes_is_dropped(process: ModelProcess) -> None:
-    """Otherwise, the newest request would wait for answers that nobody needs."""
+def test_a_request_that_nobody_wants_any_more_is_dropped_when_its_turn_comes(process: ModelProcess) -> None:
+    """If it were not dropped, the newest request would wait for an answer that nobody needs."""
     unwanted, refused = threading.Event(), list[str]()
 
     def ask() -> None:
@@ -187,7 +187,7 @@ def test_a_request_that_is_unwanted_when_its_turn_comes_is_dropped(process: Mode
         refused.append(str(caught.value))
 
     process.start()
-    with process._turn:  # another request is under way
+    with process._turn:  # as if another request were running
         waiting = threading.Thread(target=ask)
         waiting.start()
         unwanted.set()
@@ -196,7 +196,7 @@ def test_a_request_that_is_unwanted_when_its_turn_comes_is_dropped(process: Mode
     assert process.restarts == 0
 
 
-def test_a_backend_may_be_a_folder_of_files_that_import_each_other(tmp_path: Path) -> None:
+def test_a_backend_can_be_a_folder_of_files_that_import_each_other(tmp_path: Path) -> None:
     (tmp_path / "__init__.py").write_text("from .work import double\n\ndef load(config):\n    return double\n")
     (tmp_path / "work.py").write_text("def double(header, data):\n    return {}, 2 * data\n")
     process = ModelProcess(Backend(tmp_path, "voiceio", "twice"), {})

@@ -1,4 +1,4 @@
-"""interloc: its signals carry the key and the name of each user who comes or goes."""
+"""The signals of `interloc` have the key and the name of each user who comes or goes."""
 
 import ravestate as rs
 from ravestate.modules import interloc

@@ -1,4 +1,4 @@
-"""rawio: each input raises a signal, even an equal one, and code outside of rules may write the input."""
+"""In `rawio`, each input raises a signal, even if it equals the last input. Code outside rules can write the input."""
 
 import asyncio
 

@@ -1,4 +1,4 @@
-"""idle notices silence and delay at the right moment of virtual time."""
+"""`idle` notices silence and delay at the right moment of virtual time."""
 
 import pytest
 
@@ -10,7 +10,7 @@ from ravestate.testing import simulate
 watch = rs.Module("watch", requires=[rawio, idle])
 times = watch.slot("times", ())
 SOON = {"bored_after": 5.0, "answer_time": 12.0}
-"""Short silences."""
+"""Settings with short silences."""
 
 
 @watch.rule(when=idle.bored, writes=times)
@@ -24,7 +24,7 @@ async def answer(ctx: rs.RuleContext) -> None:
     ctx[rawio.output] = "yes"
 
 
-def test_the_agent_is_bored_again_after_each_answer_to_its_boredom() -> None:
+def test_boredom_returns_as_long_as_the_silence_lasts() -> None:
     with simulate(watch, settings={"idle": SOON}) as sim:
         sim.say("hello")
         sim.advance(20.0)
@@ -61,7 +61,7 @@ def test_a_setting_limits_the_remarks_in_a_row() -> None:
         assert len(sim.said) == 3
 
 
-def test_a_key_pressed_shows_that_the_user_is_there() -> None:
+def test_a_key_press_shows_that_the_user_is_there() -> None:
     with simulate(chatty) as sim:
         sim.advance(3600.0)
         sim.emit(rawio.typing)
@@ -80,7 +80,7 @@ def test_activity_delays_boredom() -> None:
         assert sim.read(times) == pytest.approx((9.0,))
 
 
-def test_the_silence_after_startup_bores_the_agent() -> None:
+def test_a_silence_right_after_startup_bores_the_agent() -> None:
     with simulate(watch, settings={"idle": SOON}) as sim:
         sim.advance(12.0)
         assert sim.read(times) == pytest.approx((5.0, 10.0))
@@ -108,7 +108,7 @@ def test_the_first_words_delay_the_first_boredom(begin: float) -> None:
 
 
 @pytest.mark.parametrize("words", ["Goodbye!", "shut up", "please be quiet", "ok, see you tomorrow"])
-def test_a_farewell_or_a_wish_for_quiet_holds_until_the_user_speaks(words: str) -> None:
+def test_after_a_farewell_or_a_wish_for_quiet_the_agent_is_not_bored_until_the_user_speaks(words: str) -> None:
     with simulate(watch, settings={"idle": SOON}) as sim:
         sim.say(words)
         sim.advance(600.0)
@@ -189,7 +189,7 @@ def test_a_sent_line_is_followed_by_an_ordinary_silence() -> None:
         assert sim.read(times) == pytest.approx((12.0,))
 
 
-def test_after_a_farewell_it_does_not_matter_how_fast_the_agent_answers() -> None:
+def test_a_farewell_prevents_boredom_even_if_the_agent_answers_it_immediately() -> None:
     swift = rs.Module("swift", requires=[rawio, idle])
     bored = swift.slot("bored", 0)
 
@@ -227,7 +227,7 @@ def test_after_words_of_sorrow_the_agent_is_not_bored_for_twelve_utterances() ->
         assert sim.read(times)
 
 
-def test_a_silence_is_long_by_default() -> None:
+def test_by_default_the_agent_is_bored_after_a_silence_of_about_15_seconds() -> None:
     with simulate(chatty) as sim:
         sim.advance(14.0)
         assert sim.said == []

@@ -1,4 +1,4 @@
-"""One pipeline for all tests, loaded when the first of them needs it."""
+"""One pipeline for all tests, loaded when a test first needs it."""
 
 import pytest
 
@@ -7,7 +7,7 @@ from ravestate.modules.meta.nlp.pipeline import Pipeline, pipeline
 
 @pytest.fixture(scope="session")
 def reader() -> Pipeline:
-    """The pipeline that the module takes by default."""
+    """The default pipeline of the module."""
     shared = pipeline("")
     shared.load()
     return shared

@@ -1,4 +1,4 @@
-"""Rules for the meaning of answers; `tests/quality` measures how often the meaning is right."""
+"""Properties of the meaning of any answer. `tests/quality` measures how often the meaning is right."""
 
 import pytest
 from hypothesis import given
@@ -22,7 +22,7 @@ MEANINGS = (
 
 
 @pytest.mark.parametrize("text", ["yes", "no", "probably not", "of course", "I don't know"])
-def test_capitals_spaces_and_marks_change_nothing(text: str) -> None:
+def test_capitals_spaces_and_punctuation_do_not_change_the_meaning(text: str) -> None:
     for variant in (
         text.upper(),
         f"  {text} ",

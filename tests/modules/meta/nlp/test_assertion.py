@@ -1,4 +1,4 @@
-"""The parts of a statement. The set ``flags_rows`` measures how well its flags are found."""
+"""The parts of a statement. The quality set ``flags_rows`` measures how well its flags are found."""
 
 from __future__ import annotations
 
@@ -23,7 +23,7 @@ def test_a_relative_has_its_name_and_its_role(reader: Pipeline) -> None:
     assert (statement.verb, statement.object.name, statement.object.preposition) == ("live", "Antwerp", "in")
 
 
-def test_an_owner_may_have_an_owner(reader: Pipeline) -> None:
+def test_an_owner_can_have_an_owner(reader: Pipeline) -> None:
     (statement,) = said(reader, "My daughter's name is Mia.")
     assert statement.subject.head == "name" and statement.subject.of("I")
     assert statement.subject.owner is not None and statement.subject.owner.head == "daughter"

@@ -1,4 +1,4 @@
-"""Importing a package can be forbidden for one thread."""
+"""`blocked` forbids one thread to import a package. `postponed` delays an import until a call."""
 
 import importlib
 import sys
@@ -40,7 +40,7 @@ def test_a_package_that_is_already_imported_stays_available() -> None:
 
 @pytest.fixture
 def shop(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
-    """A package that imports a function from a part of itself."""
+    """A package that imports a function from its own subpackage."""
     monkeypatch.syspath_prepend(str(tmp_path))
     (tmp_path / "shop" / "office").mkdir(parents=True)
     (tmp_path / "shop" / "__init__.py").write_text("from .office.desk import write")

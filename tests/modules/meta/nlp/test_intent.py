@@ -1,4 +1,4 @@
-"""Intents by examples, as a designer declares them."""
+"""Intents that a designer declares by examples."""
 
 from pathlib import Path
 
@@ -12,7 +12,7 @@ from ravestate.testing import simulate
 
 
 def cafe() -> rs.Module:
-    """A café with two intents, two examples each, and small talk."""
+    """A café with small talk and two intents, each with two examples."""
     module = rs.Module("cafe", requires=[rawio, nlp])
     hours = nlp.intent(module, "opening_hours", examples=["when do you open", "how late are you open"])
     table = nlp.intent(module, "book_table", examples=["I would like to book a table", "a table for two please"])
@@ -48,7 +48,7 @@ def test_an_utterance_that_resembles_the_examples_of_an_intent_raises_it() -> No
         assert not sim.failures
 
 
-def test_a_match_says_how_sure_it_is() -> None:
+def test_a_match_has_its_score_its_margin_and_the_nearest_example() -> None:
     with simulate(cafe()) as sim:
         sim.say("At what time do you open?")
         seen = sim.read(nlp.analysis)
@@ -63,14 +63,14 @@ def test_small_talk_has_less_utility_than_an_intent() -> None:
     assert policy.utility("cafe:tell_hours") > policy.utility("cafe:chat") + 1.0
 
 
-def test_two_sentences_may_have_two_intents() -> None:
+def test_two_sentences_of_one_utterance_can_have_two_intents() -> None:
     with simulate(cafe()) as sim:
         sim.say("When do you open? I want to book a table.")
         seen = sim.read(nlp.analysis)
         assert seen is not None and set(seen.intents) == {"cafe:opening_hours", "cafe:book_table"}
 
 
-def test_intents_of_several_modules_compete_and_contexts_share_nothing_but_what_was_learnt() -> None:
+def test_intents_of_several_modules_compete_and_a_context_knows_only_its_own_intents() -> None:
     bar = rs.Module("bar", requires=[nlp])
     nlp.intent(bar, "drink", examples=["a beer please", "I would like a glass of wine"])
     with simulate(cafe(), bar) as sim, simulate(bar) as other:
@@ -114,7 +114,7 @@ def test_a_rule_that_is_added_later_hears_an_intent() -> None:
         assert sim.said == ["Ten euros."]
 
 
-def test_examples_may_come_from_a_file_beside_the_code(tmp_path: Path) -> None:
+def test_examples_can_come_from_a_file_beside_the_code(tmp_path: Path) -> None:
     (tmp_path / "hours.yaml").write_text("- when do you open\n- how late are you open\n")
     (tmp_path / "all.yaml").write_text("price: [how much is it, what does it cost]\nhours: [when do you open]\n")
     code = (
@@ -129,7 +129,7 @@ def test_examples_may_come_from_a_file_beside_the_code(tmp_path: Path) -> None:
     }
 
 
-def test_mistakes_of_the_designer_have_helpful_messages(tmp_path: Path) -> None:
+def test_the_errors_about_a_designers_mistakes_say_what_to_change(tmp_path: Path) -> None:
     module = rs.Module("shop", requires=[nlp])
     with pytest.raises(rs.DeclarationError, match=r"there are no examples: write two or more sentences"):
         nlp.intent(module, "price", examples=[])
@@ -149,7 +149,9 @@ def test_mistakes_of_the_designer_have_helpful_messages(tmp_path: Path) -> None:
         nlp.intent(rs.Module("bare"), "price", examples=["how much is it"])
 
 
-def test_without_the_sentence_model_the_examples_are_understood_word_for_word(monkeypatch: pytest.MonkeyPatch) -> None:
+def test_without_the_sentence_model_only_the_exact_words_of_an_example_raise_its_intent(
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
     from ravestate.language.bundled import ModelMissing
     from ravestate.language.matcher import Matcher
 
@@ -171,7 +173,7 @@ def test_without_the_sentence_model_the_examples_are_understood_word_for_word(mo
 
 
 def test_most_typed_utterances_raise_the_right_intent() -> None:
-    """Twenty intents of three examples each: at least 90 % of what users type, and no intent for other sentences."""
+    """With three examples for each of 20 intents, at least 90 % of utterances are right, and other texts get none."""
     demo = yaml.safe_load((Path(__file__).parents[3] / "quality" / "demo_rows.yaml").read_text(encoding="utf-8"))
     module = rs.Module("demo", requires=[nlp])
     for name, lists in demo["intents"].items():

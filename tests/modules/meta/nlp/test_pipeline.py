@@ -1,4 +1,4 @@
-"""The pipeline: its trees, odd texts, threads, and missing packages."""
+"""The pipeline: its trees, and how it deals with odd texts, threads and missing packages."""
 
 import builtins
 import subprocess
@@ -32,7 +32,7 @@ def test_entities_have_the_right_positions_in_the_text(reader: Pipeline) -> None
     assert all(text[e.start : e.end] == e.text for e in entities)
 
 
-def test_entities_of_typed_english_have_places_in_the_input(reader: Pipeline) -> None:
+def test_entities_of_careless_english_have_their_positions_in_the_input(reader: Pipeline) -> None:
     text = "im tom miller n ive lived in berlin since 1999"
     seen = analyse(text, reader)
     assert {(text[e.start : e.end], e.label) for e in seen.entities} >= {("berlin", "GPE"), ("1999", "DATE")}
@@ -58,7 +58,7 @@ def test_like_is_a_verb_and_keeps_its_lemma(reader: Pipeline) -> None:
      "a\udcffb", "?" * 500, "and " * 500, "((((((((((", "\u202ehello\u202c", "http://example.org/?q=1&r=2", "'s 's 's n't n't", "-" * 3000,
      "who who who is is is", "what", "not not not", "that that that that is is that"],
 )  # fmt: skip
-def test_any_text_can_be_analysed(reader: Pipeline, text: str) -> None:
+def test_any_text_is_analysed_without_an_error(reader: Pipeline, text: str) -> None:
     seen = analyse(text, reader, ["Ravestate", "", "(?"])
     assert [word.text for word in seen.tree.words] == [seen.tree.text[w.start : w.end] for w in seen.tree.words]
     assert seen.normal.original == text[:LONGEST]
@@ -81,7 +81,7 @@ def test_the_vocabulary_does_not_grow(reader: Pipeline) -> None:
     assert len(strings) == before
 
 
-def test_many_threads_may_read_at_once(reader: Pipeline) -> None:
+def test_many_threads_can_read_at_the_same_time(reader: Pipeline) -> None:
     found: list[list[str]] = []
 
     def read() -> None:
@@ -100,7 +100,7 @@ def test_many_threads_may_read_at_once(reader: Pipeline) -> None:
 def test_readers_in_new_contexts_do_not_look_for_a_backend_again(
     reader: Pipeline, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    """Each rule runs in a context of its own, and in each context spaCy would look for its way to compute."""
+    """Each rule runs in its own `contextvars.Context`, and spaCy would look for its backend in each of them."""
     reader.read("The kettle is on.")
     looked: list[str] = []
     import thinc.backends
@@ -132,7 +132,7 @@ SAID = (
 
 @pytest.fixture
 def crowd(reader: Pipeline) -> Callable[[], list[Any]]:
-    """A function that reads all of `SAID` at once, each in a thread, and returns results and errors."""
+    """A function that reads each text of `SAID` in a separate thread, and returns their results and errors."""
 
     def ask() -> list[Any]:
         found: list[Any] = [None] * len(SAID)
@@ -144,7 +144,7 @@ def crowd(reader: Pipeline) -> Callable[[], list[Any]]:
                 found[number] = error
 
         threads = [threading.Thread(target=read, args=(number,)) for number in range(len(SAID))]
-        with reader._lock:  # a reader holds the lock: all of them wait
+        with reader._lock:  # a reader holds the lock, so all these threads wait
             for thread in threads:
                 thread.start()
             while len(reader._orders) < len(SAID):
@@ -170,12 +170,12 @@ def test_waiting_texts_are_read_in_one_batch_with_equal_results(
         assert (tree.text, tree.words, entities) == (other_tree.text, other_tree.words, other_entities)
 
 
-def test_a_failing_text_fails_alone(
+def test_a_text_that_fails_does_not_affect_other_texts_in_its_batch(
     reader: Pipeline, crowd: Callable[[], list[Any]], monkeypatch: pytest.MonkeyPatch
 ) -> None:
     def stumble(text: str) -> str:
         if text == "No":
-            raise ArithmeticError("of all words")
+            raise ArithmeticError("this text fails")
         return text
 
     monkeypatch.setattr(pipeline_module, "preprocess", stumble)
@@ -189,7 +189,7 @@ def test_contexts_share_a_pipeline() -> None:
     assert pipeline("another") is not pipeline("") and not pipeline("another").loaded
 
 
-def test_an_unknown_pipeline_is_named() -> None:
+def test_the_error_names_an_unknown_pipeline() -> None:
     with pytest.raises(
         PlatformError,
         match=r"no spaCy pipeline 'de_core_nonsense': python -m spacy download de_core_nonsense",
@@ -203,7 +203,7 @@ def test_a_broken_pipeline_is_an_error(tmp_path: Path) -> None:
         Pipeline(str(tmp_path)).load()
 
 
-def test_without_spacy_the_extra_is_named(monkeypatch: pytest.MonkeyPatch) -> None:
+def test_without_spacy_the_error_names_the_extra_to_install(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.delitem(sys.modules, "spacy", raising=False)
     importing = builtins.__import__
 

@@ -1,4 +1,4 @@
-"""The text as the pipeline gets it."""
+"""Preprocessing prepares a text for the pipeline."""
 
 from hypothesis import given
 from hypothesis import strategies as st
@@ -9,7 +9,7 @@ from ravestate.modules.meta.nlp.preprocessing import preprocess
 @given(
     st.text() | st.lists(st.sampled_from(["I", "like", "LIKE", "do", "not", " ", "’", "\x00", "\ud800"])).map("".join)
 )
-def test_positions_stay_and_the_text_can_be_encoded(text: str) -> None:
+def test_preprocessing_keeps_the_length_of_a_text_and_makes_it_valid_unicode(text: str) -> None:
     copy = preprocess(text)
     assert len(copy) == len(text)
     copy.encode()

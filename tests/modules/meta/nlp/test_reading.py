@@ -1,4 +1,4 @@
-"""A language model that helps to read utterances: its readings, its failures, and the real wire."""
+"""A language model that helps to read utterances: its readings, its failures, and its requests over HTTP."""
 
 import asyncio
 import json
@@ -70,11 +70,11 @@ def test_the_slots_are_filled_from_the_reading_of_the_model() -> None:
         assert sim.read(nlp.triples) == (nlp.Triple("My sister", "live", "antwerp"),)  # capitals as typed
         assert sim.read(nlp.yesno) == nlp.YesNo(0, 1, False)
         (place,) = sim.read(nlp.entities)
-        assert (place.start, place.end) == (14, 21)  # in the text as typed
+        assert (place.start, place.end) == (14, 21)  # positions in the text as typed
     assert model.closed
 
 
-def test_a_question_of_the_model_raises_the_signal() -> None:
+def test_a_question_that_the_model_finds_raises_is_question() -> None:
     module = rs.Module("test", requires=[nlp])
 
     @module.rule(when=nlp.is_question)
@@ -89,7 +89,7 @@ def test_a_question_of_the_model_raises_the_signal() -> None:
 
 
 @pytest.mark.parametrize("written", ["", "I am a robot and I live in a small box.", "42"])
-def test_a_model_that_does_not_keep_to_the_words_changes_nothing(written: str) -> None:
+def test_a_reading_with_words_that_the_user_did_not_say_is_ignored(written: str) -> None:
     with simulate(nlp) as sim:
         sim.put(nlp.reader, nlp.ModelReader(given_by(written, "REASON", "yes"), 60.0))
         sim.say("where do u live")
@@ -99,7 +99,7 @@ def test_a_model_that_does_not_keep_to_the_words_changes_nothing(written: str) -
 
 
 @pytest.mark.parametrize("answer", [None, PlatformError("nlp: no server"), "{}", "no JSON", ""])
-def test_an_utterance_is_analysed_although_the_model_fails(
+def test_an_utterance_is_analysed_even_if_the_model_fails(
     answer: str | PlatformError | None, caplog: pytest.LogCaptureFixture
 ) -> None:
     model = Model(answer)
@@ -111,7 +111,7 @@ def test_an_utterance_is_analysed_although_the_model_fails(
     assert [record.levelname for record in caplog.records if "nlp:" in record.message] == ["WARNING"]
 
 
-def test_each_failure_in_a_row_doubles_the_utterances_without_the_model() -> None:
+def test_each_failure_in_a_row_doubles_the_number_of_utterances_that_skip_the_model() -> None:
     async def main() -> list[int]:
         model, asked = Model("broken"), list[int]()
         reader = nlp.ModelReader(model, 60.0)
@@ -124,7 +124,7 @@ def test_each_failure_in_a_row_doubles_the_utterances_without_the_model() -> Non
         model.answer = GIVEN.model_dump_json()
         while await reader.read("hello") is None:
             pass
-        assert await reader.read("hello") == GIVEN  # one success, and the model is asked again at once
+        assert await reader.read("hello") == GIVEN  # after one success, the model gets every utterance again
         return asked
 
     asked = asyncio.run(main())
@@ -133,7 +133,7 @@ def test_each_failure_in_a_row_doubles_the_utterances_without_the_model() -> Non
     assert set(gaps[7:]) == {MOST_SKIPPED}
 
 
-def test_texts_that_are_long_or_empty_are_not_for_the_model() -> None:
+def test_long_and_empty_texts_are_not_sent_to_the_model() -> None:
     model = Model(GIVEN.model_dump_json())
     reader = nlp.ModelReader(model, 60.0)
     for text in ("", " \n", "a" * (LONGEST + 1)):
@@ -142,7 +142,7 @@ def test_texts_that_are_long_or_empty_are_not_for_the_model() -> None:
 
 
 @given(st.text(max_size=60), st.text(max_size=60))
-def test_the_offsets_of_a_reading_lead_into_the_users_text(written: str, text: str) -> None:
+def test_the_offsets_of_a_reading_are_ascending_positions_in_the_users_text(written: str, text: str) -> None:
     normal = nlp.Reading(written=written, question="NONE", answer="none").normal(text)
     if normal is not None:
         assert len(normal.origin) == len(normal.text) + 1
@@ -150,7 +150,7 @@ def test_the_offsets_of_a_reading_lead_into_the_users_text(written: str, text: s
         assert all(0 <= place <= len(text) for place in normal.origin)
 
 
-def test_the_settings_reach_the_server(chat_server: Any) -> None:
+def test_the_request_to_the_server_has_the_model_and_the_key_from_the_settings(chat_server: Any) -> None:
     async def answer(talk: Any) -> None:
         await talk.head()
         await talk.piece(GIVEN.model_dump_json(), "stop")
@@ -171,20 +171,20 @@ def test_the_settings_reach_the_server(chat_server: Any) -> None:
     asyncio.run(main())
 
 
-def test_only_settings_with_a_model_make_a_reader() -> None:
+def test_there_is_a_model_reader_only_if_the_settings_name_a_model() -> None:
     with simulate(nlp) as sim:
         assert sim.read(nlp.reader) is None
     with simulate(nlp, settings={"nlp": {"model": "tiny"}}) as sim:
         assert sim.read(nlp.reader) is not None
 
 
-def test_an_absent_server_is_named_with_the_setting_of_nlp() -> None:
+def test_the_error_about_an_absent_server_names_the_setting_of_nlp() -> None:
     with pytest.raises(PlatformError, match=r"nlp: no server answers at .* --set nlp.base_url="):
         asyncio.run(model_reader("tiny", "http://127.0.0.1:9/v1", None, 60.0).read("where u live"))
 
 
-def test_llama_cpp_keeps_to_the_schema() -> None:
-    """The answers of a tiny model are nonsense, but its server forces them into the form of a reading."""
+def test_an_answer_from_llama_cpp_follows_the_schema() -> None:
+    """A tiny model answers nonsense, but its server forces each answer into the form of a reading."""
     process = llama_process.take(ModelKey(bundled_model(), 2048, 1, 1))
 
     async def main() -> list[nlp.Reading | None]:

@@ -1,4 +1,4 @@
-"""The repair of parse trees makes clauses and questions readable."""
+"""The repair of parse trees corrects clauses and questions that the parser misread."""
 
 import pytest
 
@@ -29,7 +29,7 @@ def triples(reader: Pipeline, text: str) -> str:
         ("we like swimming and tennis", "(we, like, swimming) (we, like, tennis)"),
     ],
 )
-def test_a_misread_clause_has_its_triple(text: str, expected: str, reader: Pipeline) -> None:
+def test_a_clause_that_the_parser_misreads_has_the_right_triple(text: str, expected: str, reader: Pipeline) -> None:
     assert triples(reader, text) == expected
 
 
@@ -45,7 +45,7 @@ def test_a_question_tag_turns_a_statement_into_a_question_and_adds_no_triple(tex
     assert statement.question and not statement.negated
 
 
-def test_a_tree_without_faults_stays_as_it_is(reader: Pipeline) -> None:
+def test_a_correct_tree_stays_as_it_is(reader: Pipeline) -> None:
     tree, _ = reader.read("My sister lives in Rome.")
     assert repaired(tree) is tree
     assert not any(tag_at(tree.words, word.index) for word in tree.words)
@@ -79,5 +79,5 @@ def test_a_noun_with_a_capital_inside_a_sentence_is_a_name(reader: Pipeline) -> 
 
 
 @pytest.mark.parametrize("text", ["I'm thinking of moving to Bern", "we are moving to Bern"])
-def test_an_action_that_somebody_intends_is_a_plan(text: str, reader: Pipeline) -> None:
+def test_an_intended_action_counts_as_a_plan(text: str, reader: Pipeline) -> None:
     assert all(statement.plan for statement in statements_of(reader.read(text)[0]))

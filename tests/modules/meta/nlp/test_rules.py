@@ -1,4 +1,4 @@
-"""The module in an agent: its slots, signals, and errors."""
+"""The module `nlp` in an agent: its slots, signals and errors."""
 
 import subprocess
 import sys
@@ -74,7 +74,7 @@ def test_simultaneous_utterances_are_analysed_in_order(
 
     def read(text: str, *rest: Any) -> Any:
         if text == "I live in Ulm.":
-            later.wait(0.2)  # by now the second analysis would have ended if it did not wait for the first
+            later.wait(0.2)  # without waiting for the first analysis, the second would have ended by now
         else:
             later.set()
         return analyse(text, *rest)
@@ -88,7 +88,7 @@ def test_simultaneous_utterances_are_analysed_in_order(
     assert written == ["I live in Ulm.", "No, in Bremen."]
 
 
-def test_every_utterance_signals_every_slot() -> None:
+def test_every_utterance_raises_the_changed_signal_of_every_slot() -> None:
     module = rs.Module("counter", requires=[nlp])
     counted: list[str] = []
     for slot in SLOTS:
@@ -131,7 +131,7 @@ def test_each_utterance_raises_the_right_signals(text: str, signals: set[str]) -
     assert raised == signals
 
 
-def test_the_agents_names_are_a_setting() -> None:
+def test_a_setting_gives_the_names_of_the_agent() -> None:
     module = rs.Module("listener", requires=[nlp])
     heard = module.flag("heard")
 
@@ -149,7 +149,7 @@ def test_the_agents_names_are_a_setting() -> None:
             assert sim.read(heard) is expected, text
 
 
-def test_slots_are_in_place_before_any_signal_is_heard() -> None:
+def test_a_rule_that_hears_one_signal_finds_all_slots_written() -> None:
     module = rs.Module("reader", requires=[nlp])
     seen: list[Any] = []
 
@@ -170,7 +170,7 @@ def test_slots_are_in_place_before_any_signal_is_heard() -> None:
 
 
 def agent() -> rs.Module:
-    """A skill for questions about the agent, and small talk."""
+    """A module that answers questions about the agent, and makes small talk."""
     module = rs.Module("agent", requires=[rawio, nlp])
 
     @module.rule(when=nlp.is_question & nlp.about_agent, writes=rawio.output)

@@ -1,4 +1,4 @@
-"""Rules for triples; `tests/quality` measures how often they are right."""
+"""Properties of any triples. `tests/quality` measures how often they are right."""
 
 import pytest
 

@@ -1,4 +1,4 @@
-"""A text as a tree of plain records."""
+"""A parsed text is a tree of plain records."""
 
 from ravestate.modules.meta.nlp.tree import Tree, Word
 
@@ -57,6 +57,6 @@ def test_a_word_has_its_position_and_a_lower_case_form() -> None:
     assert word.low == "don't"
 
 
-def test_a_chain_of_any_length_is_walked() -> None:
+def test_a_chain_of_heads_can_have_any_length() -> None:
     long = Tree("", words(" ".join(f"w/NOUN/conj>{max(index - 1, 0)}" for index in range(5000))))
     assert len(long.subtree(long.words[0])) == 5000

@@ -26,7 +26,7 @@ def main(folder: str, bolt_port: int, http_port: int, password: str, database: s
     server.create_database(database)
     print("ready", flush=True)
     sys.stdin.read()
-    os._exit(0)  # nobody needs the data any more, and a normal end sometimes waits for connections
+    os._exit(0)  # the data is no longer needed, and a normal end sometimes waits for connections
 
 
 if __name__ == "__main__":

@@ -1,4 +1,4 @@
-"""Write to a memory until its file may not grow, and go on; print one line of JSON: ``python full_disk.py FILE``."""
+"""Write to a memory until its file cannot grow, and continue. Print one line of JSON: ``python full_disk.py FILE``."""
 
 import json
 import os

@@ -1,4 +1,4 @@
-"""Unusable servers: each causes a clear error, and none blocks memory."""
+"""Memory on a Bolt server. An unusable server causes a clear error, and never blocks memory."""
 
 from __future__ import annotations
 
@@ -159,7 +159,7 @@ def test_two_clients_share_a_server(bolt_server: dict[str, Any], open_here: Open
     assert first.get(ada.id).result() == ada.with_properties(age=36)
 
 
-def test_the_password_may_come_from_the_environment(
+def test_the_password_can_come_from_the_environment(
     bolt_server: dict[str, Any], monkeypatch: pytest.MonkeyPatch
 ) -> None:
     from ravestate.settings import load_settings
@@ -173,7 +173,7 @@ def test_the_password_may_come_from_the_environment(
     memory.close().result(60)
 
 
-def test_a_missing_package_is_named(monkeypatch: pytest.MonkeyPatch) -> None:
+def test_the_error_names_a_missing_package(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setitem(sys.modules, "neo4j", None)
     said = failure(url="bolt://localhost:1", database=DATABASE)
     assert said == "ontology needs neo4j for the server bolt://localhost:1: pip install 'ravestate[neo4j]'"

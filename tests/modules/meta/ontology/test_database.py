@@ -32,7 +32,7 @@ FORMAT_1 = (
     "MATCH (a:Person {id: 'Person:1'}), (b:Person {id: 'Person:2'}) CREATE (a)-[:friend_of]->(b)",
     "MATCH (a:Person), (b:Boat) CREATE (a)-[:owns {since: '2020-01-01'}]->(b)",
 )
-"""Statements that make a memory as earlier versions did, with a table for each type and relation."""
+"""Statements that make a memory like those of earlier versions, with a table for each type and each relation."""
 
 
 def write_format_1(path: Path, *more: str) -> None:
@@ -55,7 +55,7 @@ def small_memory(tmp_path: Path, open_here: Open) -> Path:
 
 
 def test_a_damaged_file_is_read_or_called_broken(tmp_path: Path, open_here: Open) -> None:
-    """Cut files, flipped bits, and pages of zeros or noise: about one in eight would end the process that opens it."""
+    """Files are cut, have flipped bits, or pages of zeros or noise. About one in eight would crash its process."""
     path, cases = small_memory(tmp_path, open_here), 16
     run = subprocess.run(
         [sys.executable, HERE / "damaged.py", path, "4", str(cases)],
@@ -75,7 +75,9 @@ def test_a_trial_opening_does_not_change_an_intact_file(tmp_path: Path, open_her
     assert path.read_bytes() == content
 
 
-def test_a_trial_fails_if_its_process_crashes_or_hangs(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+def test_a_trial_opening_fails_only_if_its_process_crashes_or_hangs(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
     monkeypatch.setattr(database, "PATIENCE", 2.0)
     file = tmp_path / "trial.py"
     for program, alive in (
@@ -147,8 +149,10 @@ def file_of(tmp_path: Path, types: str) -> tuple[Path]:
     return (file,)
 
 
-def test_types_of_format_1_may_have_properties_of_one_name_and_other_kinds(tmp_path: Path, open_here: Open) -> None:
-    """Earlier versions had a table for each type; a type that is no longer declared stays in the file."""
+def test_types_of_format_1_can_have_properties_of_equal_names_and_different_kinds(
+    tmp_path: Path, open_here: Open
+) -> None:
+    """Earlier versions had a table for each type. The file keeps the tables of types that are no longer declared."""
     path = tmp_path / "memory.lbug"
     write_format_1(
         path,

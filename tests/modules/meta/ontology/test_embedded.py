@@ -1,4 +1,4 @@
-"""Memory in a file: kills, full disks, damage, and clear errors."""
+"""Memory in a file survives kills and full disks, and reports damage clearly."""
 
 from __future__ import annotations
 
@@ -69,12 +69,12 @@ def test_acknowledged_writes_survive_a_kill(
     [here] = memory.find("City").result()
     names = [node["name"] for node in memory.related(here, "lives_in", back=True).result()]
     assert names[:acknowledged] == [f"person {number}" for number in range(acknowledged)]
-    assert len(names) <= acknowledged + 1  # one write may be on disk, but not yet acknowledged
+    assert len(names) <= acknowledged + 1  # one more write can be on disk without being acknowledged yet
     assert memory.create("Person", name="after").result()["name"] == "after"
 
 
 @pytest.mark.parametrize("times", [1, 4, 9])
-def test_after_a_kill_during_forget_forgotten_people_stay_forgotten_and_nobody_else_is_lost(
+def test_a_kill_during_forget_neither_restores_forgotten_people_nor_loses_others(
     tmp_path: Path, open_here: Open, times: int
 ) -> None:
     path = tmp_path / "memory.lbug"
@@ -103,7 +103,9 @@ def test_a_second_process_learns_which_process_has_the_file(
     assert "--set ontology.path=FILE" in said
 
 
-def test_a_second_opening_runs_no_statement(tmp_path: Path, open_here: Open, monkeypatch: pytest.MonkeyPatch) -> None:
+def test_opening_a_file_that_this_process_has_open_runs_no_statement(
+    tmp_path: Path, open_here: Open, monkeypatch: pytest.MonkeyPatch
+) -> None:
     open_here(path=tmp_path / "memory.lbug").opened().result()
     asked: list[str] = []
     execute = EmbeddedStore._execute
@@ -117,20 +119,20 @@ def test_a_second_opening_runs_no_statement(tmp_path: Path, open_here: Open, mon
     assert asked == []
 
 
-def test_one_process_opens_a_file_once_however_it_is_named(tmp_path: Path, open_here: Open) -> None:
+def test_a_process_opens_a_file_once_even_under_several_paths(tmp_path: Path, open_here: Open) -> None:
     (tmp_path / "link").symlink_to(tmp_path, target_is_directory=True)
     first = open_here(path=tmp_path / "memory.lbug")
     second = open_here(path=tmp_path / "link" / ".." / tmp_path.name / "memory.lbug")
     ada = first.create("Person", name="Ada").result()
     assert second.find("Person").result() == [ada]
     first.close().result()
-    second.update(ada, age=36).result()  # the file is open as long as somebody uses it
+    second.update(ada, age=36).result()  # the file stays open until its last user closes it
     second.close().result()
     assert open_here(path=tmp_path / "memory.lbug").get(ada.id).result() == ada.with_properties(age=36)
 
 
 @pytest.mark.parametrize("ending", ["full", "room"])
-def test_a_full_disk_is_an_error_and_loses_nothing(tmp_path: Path, open_here: Open, ending: str) -> None:
+def test_a_full_disk_raises_an_error_and_loses_no_data(tmp_path: Path, open_here: Open, ending: str) -> None:
     path = tmp_path / "memory.lbug"
     run = subprocess.run(
         [sys.executable, HERE / "full_disk.py", path, ending],
@@ -147,7 +149,7 @@ def test_a_full_disk_is_an_error_and_loses_nothing(tmp_path: Path, open_here: Op
     assert len(found) <= len(told["acknowledged"]) + 1
 
 
-def test_nothing_is_written_when_there_is_hardly_space(
+def test_nothing_is_written_when_the_disk_is_almost_full(
     file: Path, open_here: Open, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     memory = open_here(path=file)
@@ -194,7 +196,7 @@ def test_a_log_that_cannot_be_moved_is_kept(
     assert len(open_here(path=path).find("Person").result()) == 1
 
 
-def test_a_newer_file_is_refused_and_left_alone(file: Path) -> None:
+def test_a_file_of_a_newer_version_of_ladybug_is_refused_and_not_changed(file: Path) -> None:
     newer = bytearray(file.read_bytes())
     newer[4] = 200  # the version of ladybug's format
     file.write_bytes(newer)
@@ -205,7 +207,7 @@ def test_a_newer_file_is_refused_and_left_alone(file: Path) -> None:
 
 
 @pytest.mark.parametrize("content", [b"no database at all " * 300, b"x", None])
-def test_a_broken_file_is_refused_and_left_alone(file: Path, content: bytes | None) -> None:
+def test_a_broken_file_is_refused_and_not_changed(file: Path, content: bytes | None) -> None:
     broken = file.read_bytes()[:9000] if content is None else content
     file.write_bytes(broken)
     said = failure(path=file)
@@ -213,9 +215,9 @@ def test_a_broken_file_is_refused_and_left_alone(file: Path, content: bytes | No
     assert file.read_bytes() == broken
 
 
-def test_a_file_that_lost_all_of_its_tables_is_broken_and_left_alone(file: Path) -> None:
+def test_a_file_that_lost_all_its_tables_is_refused_and_not_changed(file: Path) -> None:
     content = file.read_bytes()
-    zeroed = content[:4096] + bytes(len(content) - 4096)  # with an intact header it opens as an empty database
+    zeroed = content[:4096] + bytes(len(content) - 4096)  # because its header is intact, it opens as an empty database
     file.write_bytes(zeroed)
     said = failure(path=file)
     assert (
@@ -260,7 +262,7 @@ def test_a_damaged_log_is_read_up_to_the_damage_and_kept(
             break
 
 
-def test_a_database_of_another_program_is_left_alone(tmp_path: Path) -> None:
+def test_a_database_of_another_program_is_refused(tmp_path: Path) -> None:
     import ladybug
 
     path = tmp_path / "other.lbug"
@@ -350,7 +352,7 @@ def test_only_the_user_may_read_the_file(tmp_path: Path, open_here: Open) -> Non
     assert stat.S_IMODE(path.parent.stat().st_mode) == 0o700
 
 
-def test_a_missing_package_is_named(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+def test_the_error_names_a_missing_package(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setitem(sys.modules, "ladybug", None)
     assert failure(path=tmp_path / "x") == "ontology needs ladybug: pip install 'ravestate[ontology]'"
     assert list(tmp_path.iterdir()) == []

@@ -1,4 +1,4 @@
-"""The files of a memory: only the user may read them, and memory overlooks none of them."""
+"""Memory finds all its files, and makes them readable only by the user."""
 
 from __future__ import annotations
 
@@ -65,7 +65,7 @@ def test_files_of_memory_are_known_by_name_and_others_are_left_out(tmp_path: Pat
     assert files.present() == [] == MemoryFiles(tmp_path / "none" / "memory.lbug").present()
 
 
-def test_a_file_set_aside_replaces_no_earlier_one(tmp_path: Path) -> None:
+def test_a_file_that_is_set_aside_replaces_no_earlier_file(tmp_path: Path) -> None:
     files = MemoryFiles(tmp_path / "memory.lbug")
     for number in (1, 2):
         files.log.write_text(str(number))
@@ -74,14 +74,14 @@ def test_a_file_set_aside_replaces_no_earlier_one(tmp_path: Path) -> None:
     assert files.logs() == [] and len(files.kept()) == 2
 
 
-def test_only_the_user_may_read_the_log_from_its_first_byte(crashed: Path) -> None:
+def test_the_log_is_readable_only_by_the_user_from_its_first_byte(crashed: Path) -> None:
     assert modes(crashed.parent) == {"memory.lbug": 0o600, "memory.lbug.wal": 0o600}
 
 
 def test_only_the_user_may_read_the_files_that_memory_creates(
     tmp_path: Path, open_here: Open, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    """The check looks before and after each statement: ladybug keeps the mode of a file that is there already."""
+    """The test looks before and after each statement, because ladybug keeps the mode of an existing file."""
     seen: dict[str, int] = {}
     connect = embedded.connect
 
@@ -123,7 +123,7 @@ def test_files_of_an_earlier_version_become_readable_only_by_the_user(crashed: P
     assert set(modes(crashed.parent).values()) == {0o600}
 
 
-def test_the_log_of_a_deleted_memory_is_set_aside_and_named(
+def test_the_log_of_a_deleted_memory_is_set_aside_and_a_warning_names_it(
     crashed: Path, open_here: Open, caplog: pytest.LogCaptureFixture
 ) -> None:
     crashed.unlink()
@@ -165,7 +165,7 @@ def test_an_unfinished_rewrite_is_removed_at_the_next_opening(tmp_path: Path, op
     assert not any(b"Ada" in file.read_bytes() for file in tmp_path.iterdir())
 
 
-def test_forgetting_names_the_logs_that_may_still_have_the_data(
+def test_forget_warns_about_logs_that_can_still_have_the_data(
     crashed: Path, open_here: Open, caplog: pytest.LogCaptureFixture
 ) -> None:
     crashed.unlink()

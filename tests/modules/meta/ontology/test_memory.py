@@ -1,4 +1,4 @@
-"""The operations of memory, which behave alike in a file and on a server."""
+"""The operations of memory, which behave the same in a file and on a server."""
 
 from __future__ import annotations
 
@@ -58,7 +58,7 @@ def test_subtypes_are_found_with_their_type_oldest_first(memory: Memory) -> None
     assert memory.find("Thing", name="x").result() == [robot, person, thing, agent, city]
 
 
-def test_find_with_none_matches_nodes_without_the_property(memory: Memory) -> None:
+def test_find_with_the_value_none_matches_nodes_without_this_property(memory: Memory) -> None:
     ada = memory.create("Person", name="Ada", age=36).result()
     bob = memory.create("Person", name="Bob").result()
     nobody = memory.create("Person", age=None).result()
@@ -68,7 +68,7 @@ def test_find_with_none_matches_nodes_without_the_property(memory: Memory) -> No
 
 
 @pytest.mark.parametrize("text", NASTY)
-def test_any_text_is_stored_as_a_value(memory: Memory, text: str) -> None:
+def test_any_text_can_be_stored_as_a_value(memory: Memory, text: str) -> None:
     other = memory.create("Person", name="other").result()
     node = memory.create("Person", name=text).result()
     assert node["name"] == text
@@ -185,7 +185,7 @@ def test_nodes_are_related_once_and_in_one_direction(memory: Memory) -> None:
     assert memory.get(london.id).result() == london
 
 
-def test_unrelate_may_forget_the_other_node(memory: Memory) -> None:
+def test_unrelate_with_forget_also_removes_the_other_node_unless_memory_needs_it(memory: Memory) -> None:
     ada, bob = (memory.create("Person", name=name).result() for name in ("Ada", "Bob"))
     london, kim = memory.create("City", name="London").result(), memory.create("Person", name="Kim").result()
     for person in (ada, bob):
@@ -222,7 +222,7 @@ def test_a_relation_has_properties(open_here: Open, place: dict[str, Any], tmp_p
         memory.relate(ada, "works_for", firm, sinec=date(1833, 6, 5)).result()
 
 
-def test_a_node_may_be_related_to_itself(memory: Memory) -> None:
+def test_a_node_can_be_related_to_itself(memory: Memory) -> None:
     ada = memory.create("Person", name="Ada").result()
     memory.relate(ada, "likes", ada).result()
     assert memory.related(ada, "likes").result() == memory.related(ada, "likes", back=True).result() == [ada]
@@ -356,7 +356,9 @@ def test_forget_keeps_nodes_that_other_nodes_need_even_in_a_cycle(memory: Memory
 # ------------------------------------------------------------------------------------ documents and types
 
 
-def test_everything_is_exported_and_loaded(memory: Memory, open_here: Open, tmp_path: Path) -> None:
+def test_an_export_contains_everything_and_can_be_loaded_elsewhere(
+    memory: Memory, open_here: Open, tmp_path: Path
+) -> None:
     ada = memory.create("Person", name="Ada 😀", born=date(1815, 12, 10)).result()
     london = memory.create("City", name="London").result()
     memory.relate(ada, "lives_in", london).result()
@@ -405,14 +407,16 @@ def test_everything_is_exported_and_loaded(memory: Memory, open_here: Open, tmp_
         ),
     ],
 )
-def test_nothing_of_a_bad_document_is_loaded(memory: Memory, document: dict[str, Any], said: str) -> None:
+def test_a_document_with_an_error_is_not_loaded_even_in_part(
+    memory: Memory, document: dict[str, Any], said: str
+) -> None:
     with pytest.raises(RuleError) as caught:
         memory.load(document).result()
     assert said in str(caught.value)
     assert memory.find("Thing").result() == []
 
 
-def test_types_may_be_added_and_removed_without_loss_of_data(
+def test_types_can_be_added_and_removed_without_loss_of_data(
     open_here: Open, place: dict[str, Any], tmp_path: Path
 ) -> None:
     memory = open_here(**place)
@@ -433,7 +437,7 @@ def test_types_may_be_added_and_removed_without_loss_of_data(
     memory.relate(boat, "sails_to", memory.create("City", name="Ham").result()).result()
     memory.close().result()
 
-    narrower = open_here(**place)  # without that file, its data is hidden, but stays
+    narrower = open_here(**place)  # without the type file, the data stays but is hidden
     assert narrower.undeclared().result() == ["Boat"]
     assert narrower.find("Thing", name="Lady").result() == []
     assert narrower.related(found, "likes").result() == []
@@ -451,14 +455,14 @@ def test_types_may_be_added_and_removed_without_loss_of_data(
 # ------------------------------------------------------------------------------------ use
 
 
-def test_operations_are_done_in_the_order_of_the_calls(memory: Memory) -> None:
+def test_operations_run_in_the_order_of_the_calls(memory: Memory) -> None:
     ada = Node("Person", {"name": "Ada"})
     replies = [memory.save(ada.with_properties(age=age)) for age in range(50)]
     assert [reply.result()["age"] for reply in replies] == list(range(50))
     assert memory.find("Person").result()[0]["age"] == 49
 
 
-def test_several_operations_together_are_one_transaction(memory: Memory) -> None:
+def test_the_operations_of_a_together_call_are_one_transaction(memory: Memory) -> None:
     ada = memory.create("Person", name="Ada").result()
 
     def befriend(graph: Graph) -> Node:
@@ -480,7 +484,7 @@ def test_several_operations_together_are_one_transaction(memory: Memory) -> None
     assert memory.together(lambda graph: graph.find("City", {})).result() == []
 
 
-def test_an_awaited_operation_goes_on_after_a_cancellation(memory: Memory) -> None:
+def test_an_operation_continues_even_if_the_task_that_awaits_it_is_cancelled(memory: Memory) -> None:
     async def use() -> Node:
         ada = await memory.create("Person", name="Ada")
         for impatient in [asyncio.ensure_future(_wait(memory, age)) for age in range(5)]:
@@ -496,7 +500,7 @@ def test_an_awaited_operation_goes_on_after_a_cancellation(memory: Memory) -> No
     assert len(memory.find("Person", name="late").result()) == 5
 
 
-def test_operations_after_the_end_are_refused(memory: Memory) -> None:
+def test_a_closed_memory_refuses_operations(memory: Memory) -> None:
     ada = memory.create("Person", name="Ada")
     closing = memory.close()
     assert ada.result()["name"] == "Ada"
@@ -506,7 +510,7 @@ def test_operations_after_the_end_are_refused(memory: Memory) -> None:
         memory.create("Person", name="Bob")
 
 
-def test_a_newer_layout_is_left_alone(open_here: Open, place: dict[str, Any]) -> None:
+def test_a_memory_of_a_newer_format_is_refused(open_here: Open, place: dict[str, Any]) -> None:
     memory = open_here(**place)
     memory.create("Person", name="Ada").result()
     keeper = memory._worker

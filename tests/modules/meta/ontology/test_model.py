@@ -1,4 +1,4 @@
-"""Memory against a plain model: after any operations, both hold the same data."""
+"""After any operations, memory has the same data as a simple model in a dictionary."""
 
 from __future__ import annotations
 
@@ -38,7 +38,7 @@ def contents(draw: st.DrawFn) -> tuple[str, dict[str, Any]]:
 
 
 class MemoryAgainstModel(RuleBasedStateMachine):
-    """Each step runs in memory and on a dictionary."""
+    """Each step runs both in memory and on a dictionary."""
 
     nodes = Bundle("nodes")
 
@@ -122,7 +122,7 @@ class MemoryAgainstModel(RuleBasedStateMachine):
             assert gone == set()
             return
         assert node.id in gone
-        for source, _, target in self.relations:  # no node is gone to which a remaining node is related
+        for source, _, target in self.relations:  # each node to which a remaining node is related still exists
             assert target not in gone - {node.id} or source in gone
         for id in gone:
             del self.known[id]
@@ -130,7 +130,7 @@ class MemoryAgainstModel(RuleBasedStateMachine):
 
     @rule()
     def carry_over(self) -> None:
-        """Loading an export elsewhere gives an equal memory."""
+        """Load an export into another memory, which then must be equal."""
         document = self.memory.export().result(60)
         with tempfile.TemporaryDirectory() as folder:
             other = open_memory(ontology.Settings(path=Path(folder) / "other.lbug"))

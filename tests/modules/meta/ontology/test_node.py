@@ -1,4 +1,4 @@
-"""Nodes and relations are values."""
+"""Nodes and relations are immutable values."""
 
 import copy
 import pickle
@@ -9,7 +9,7 @@ import pytest
 from ravestate.modules.meta.ontology.node import Node, Relation
 
 
-def test_a_node_has_an_id_of_its_type_from_the_beginning_and_ids_grow() -> None:
+def test_a_new_node_has_an_id_with_its_type_and_later_nodes_have_greater_ids() -> None:
     nodes = [Node("Person") for _ in range(1000)]
     assert all(node.id.startswith("Person:") for node in nodes)
     assert [node.id for node in nodes] == sorted({node.id for node in nodes})

@@ -1,4 +1,4 @@
-"""The settings choose the place of memory."""
+"""The settings decide where memory is stored, and which types it has."""
 
 import sys
 from pathlib import Path
@@ -11,7 +11,9 @@ from ravestate.modules import ontology
 from ravestate.modules.meta.ontology.opening import default_path, open_memory, types_of
 
 
-def test_the_users_data_folder_is_that_of_the_platform(monkeypatch: pytest.MonkeyPatch, tmp_path: Path) -> None:
+def test_the_default_path_is_in_the_data_folder_of_the_operating_system(
+    monkeypatch: pytest.MonkeyPatch, tmp_path: Path
+) -> None:
     monkeypatch.setenv("HOME", str(tmp_path))
     monkeypatch.setattr(sys, "platform", "linux")
     monkeypatch.setenv("XDG_DATA_HOME", str(tmp_path / "data"))
@@ -26,7 +28,7 @@ def test_the_users_data_folder_is_that_of_the_platform(monkeypatch: pytest.Monke
     assert default_path("a") == tmp_path / "local/ravestate/a/memory.lbug"
 
 
-def test_each_agent_has_a_memory_of_its_own(monkeypatch: pytest.MonkeyPatch, tmp_path: Path) -> None:
+def test_each_agent_has_its_own_memory(monkeypatch: pytest.MonkeyPatch, tmp_path: Path) -> None:
     monkeypatch.setattr(sys, "platform", "linux")
     monkeypatch.setenv("XDG_DATA_HOME", str(tmp_path))
     for agent in ("rosie", "marvin"):
@@ -43,7 +45,7 @@ def test_an_agents_name_that_is_a_path_is_refused(agent: str) -> None:
         ontology.Settings(agent=agent)
 
 
-def test_a_path_may_begin_with_a_tilde(monkeypatch: pytest.MonkeyPatch, tmp_path: Path) -> None:
+def test_a_tilde_in_the_path_means_the_users_home_folder(monkeypatch: pytest.MonkeyPatch, tmp_path: Path) -> None:
     monkeypatch.setenv("HOME", str(tmp_path))
     memory = open_memory(ontology.Settings(path=Path("~/m.lbug")))
     memory.opened().result(60)
@@ -51,7 +53,7 @@ def test_a_path_may_begin_with_a_tilde(monkeypatch: pytest.MonkeyPatch, tmp_path
     assert (tmp_path / "m.lbug").is_file()
 
 
-def test_types_are_read_once_and_again_after_a_change(tmp_path: Path) -> None:
+def test_type_files_are_read_once_and_again_after_a_change(tmp_path: Path) -> None:
     own = tmp_path / "mine.yaml"
     own.write_text("Boat: {is: Thing}")
     settings = ontology.Settings(types=(own,))
@@ -65,7 +67,7 @@ def test_types_are_read_once_and_again_after_a_change(tmp_path: Path) -> None:
 @pytest.mark.parametrize(
     ("text", "why"), [("Person: {has: {x: nmber}}", "did you mean 'number'"), (None, "does not exist")]
 )
-def test_an_error_in_a_file_of_types_shows_before_anything_runs(tmp_path: Path, text: str | None, why: str) -> None:
+def test_an_error_in_a_type_file_is_raised_before_anything_runs(tmp_path: Path, text: str | None, why: str) -> None:
     file = tmp_path / "types.yaml"
     if text is not None:
         file.write_text(text)

@@ -1,4 +1,4 @@
-"""No byte of a forgotten node stays in the file. Only a request to forget a person waits until the bytes are gone."""
+"""Purging removes all bytes of forgotten nodes from the file. Only `forget` of a person waits until they are gone."""
 
 from __future__ import annotations
 
@@ -53,7 +53,7 @@ def rests(monkeypatch: pytest.MonkeyPatch) -> threading.Semaphore:
     return done
 
 
-def test_a_replaced_value_is_purged_in_the_first_pause(
+def test_a_replaced_value_is_purged_from_the_file_in_the_first_pause(
     tmp_path: Path, open_here: Open, rests: threading.Semaphore, rewrites: list[Path], monkeypatch: pytest.MonkeyPatch
 ) -> None:
     monkeypatch.setattr(worker, "PAUSE", NEVER)
@@ -84,7 +84,7 @@ def test_without_a_pause_the_purge_is_still_done_in_time(
     assert not holds(tmp_path / "memory.lbug")
 
 
-def test_purge_waits_until_no_byte_is_left(
+def test_purge_returns_when_no_byte_of_the_old_value_is_left(
     tmp_path: Path, open_here: Open, rewrites: list[Path], monkeypatch: pytest.MonkeyPatch
 ) -> None:
     monkeypatch.setattr(worker, "PAUSE", NEVER)
@@ -97,7 +97,7 @@ def test_purge_waits_until_no_byte_is_left(
     assert rewrites == [path]
 
 
-def test_closing_purges(tmp_path: Path, open_here: Open, monkeypatch: pytest.MonkeyPatch) -> None:
+def test_closing_a_memory_purges_it(tmp_path: Path, open_here: Open, monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr(worker, "PAUSE", NEVER)
     path = tmp_path / "memory.lbug"
     memory = open_here(path=path)
@@ -118,14 +118,14 @@ def killed(tmp_path: Path) -> Iterator[Path]:
     yield path
 
 
-def test_after_a_kill_the_purge_is_done_at_the_next_start(
+def test_a_purge_that_a_kill_prevented_is_done_after_the_next_start(
     killed: Path, open_here: Open, rests: threading.Semaphore, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     assert holds(killed)
     monkeypatch.setattr(worker, "PAUSE", 0.01)
     memory = open_here(path=killed)
     memory.find("City").result()
-    # The first rest may come before the types are read; by the second one, there has been a pause.
+    # The first call of `rest` can come before the types are read. The second call comes after a pause.
     assert rests.acquire(timeout=60) and (not holds(killed) or rests.acquire(timeout=60))
     assert not holds(killed)
     assert [city["name"] for city in memory.find("City").result()] == ["London"]
@@ -149,7 +149,7 @@ def test_a_failed_purge_is_repeated_after_the_next_start(
 
 
 @pytest.mark.parametrize("ending", ["purge", "close"])
-def test_a_purge_that_failed_is_tried_again_by_purge_and_close_but_not_in_pauses(
+def test_purge_and_close_repeat_a_failed_purge_but_pauses_do_not(
     tmp_path: Path,
     open_here: Open,
     rests: threading.Semaphore,
@@ -171,14 +171,14 @@ def test_a_purge_that_failed_is_tried_again_by_purge_and_close_but_not_in_pauses
         for _ in range(2):
             memory.find("City").result()
             assert rests.acquire(timeout=60)
-        assert rewrites == [path]  # each pause would lead to a warning
+        assert rewrites == [path]  # otherwise, each pause would log a warning
     monkeypatch.setattr(worker, "PAUSE", NEVER)
     assert holds(path)
     (memory.purge() if ending == "purge" else memory.close()).result()
     assert not holds(path)
 
 
-def test_a_deletion_that_is_rolled_back_leads_to_no_purge(
+def test_a_deletion_that_is_rolled_back_causes_no_purge(
     tmp_path: Path, open_here: Open, rewrites: list[Path], monkeypatch: pytest.MonkeyPatch
 ) -> None:
     monkeypatch.setattr(worker, "PAUSE", NEVER)

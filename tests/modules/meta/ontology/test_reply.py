@@ -1,4 +1,4 @@
-"""Code can wait for a reply on a loop or in a thread, and no error is lost."""
+"""A reply can be awaited on an event loop or waited for in a thread, and no error is lost."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Memory as a part of an agent."""
+"""Agents with memory, and slots that are bound to memory."""
 
 from __future__ import annotations
 
@@ -25,7 +25,7 @@ begun = host.slot("begun", "")
 
 @host.rule(when=rs.startup, reads=ontology.memory, writes=begun)
 async def begin(ctx: rs.RuleContext) -> None:
-    """Rules may use memory from the first moment."""
+    """Use memory at startup: rules can use it from the first moment."""
     memory = ctx[ontology.memory]
     ctx[begun] = "no memory" if memory is None else f"{len(await memory.find('Person'))} known"
 
@@ -89,7 +89,7 @@ def test_contexts_of_one_process_share_a_file(tmp_path: Path) -> None:
     assert asyncio.run(talk()) == ["Ada of 1", "Bob of 2", "Cy of 3"]
 
 
-def test_the_loop_does_not_wait_for_memory(tmp_path: Path) -> None:
+def test_the_event_loop_runs_on_while_memory_works(tmp_path: Path) -> None:
     async def talk() -> float:
         async with rs.Context(host, settings=at(tmp_path / "m.lbug")) as context:
             memory = context.read(ontology.memory)
@@ -129,7 +129,7 @@ def test_without_the_package_the_agent_runs_without_memory(
     )
 
 
-def test_an_error_in_a_file_of_types_is_an_error_of_the_context(tmp_path: Path) -> None:
+def test_a_context_with_an_error_in_a_type_file_cannot_be_made(tmp_path: Path) -> None:
     types = tmp_path / "mine.yaml"
     types.write_text("Boat:\n  is: Thnig\n")
     with pytest.raises(rs.DeclarationErrors) as refused:
@@ -156,7 +156,7 @@ async def meet(ctx: rs.RuleContext) -> None:
         ctx[guest] = what
 
 
-def test_a_write_to_a_bound_slot_is_a_write_to_memory(tmp_path: Path, open_here: Open) -> None:
+def test_a_write_to_a_bound_slot_also_writes_to_memory(tmp_path: Path, open_here: Open) -> None:
     with simulate(desk, settings=at(tmp_path / "m.lbug")) as sim:
         for number in range(20):
             sim.emit(said, {"name": f"Ada {number}", "age": number})
@@ -168,7 +168,7 @@ def test_a_write_to_a_bound_slot_is_a_write_to_memory(tmp_path: Path, open_here:
     assert (found.id, dict(found.properties)) == (ada.id, {"name": "Ada 19", "nickname": "A"})
 
 
-def test_writing_none_to_a_bound_slot_forgets_nobody(tmp_path: Path, open_here: Open) -> None:
+def test_writing_none_to_a_bound_slot_does_not_forget_the_person(tmp_path: Path, open_here: Open) -> None:
     with simulate(desk, settings=at(tmp_path / "m.lbug")) as sim:
         sim.emit(said, {"name": "Ada"})
         sim.emit(said, None)
@@ -178,7 +178,7 @@ def test_writing_none_to_a_bound_slot_forgets_nobody(tmp_path: Path, open_here: 
     assert [node["name"] for node in memory.find("Person").result()] == ["Ada", "Bob"]
 
 
-def test_writes_before_the_opening_and_right_before_the_end_are_kept(tmp_path: Path, open_here: Open) -> None:
+def test_writes_before_memory_is_open_and_right_before_the_end_are_kept(tmp_path: Path, open_here: Open) -> None:
     hasty = rs.Module("hasty", requires=[ontology])
     first, last = ontology.bound(hasty, "first", "Person"), ontology.bound(hasty, "last", "Person")
 
@@ -206,14 +206,14 @@ def test_writes_before_the_opening_and_right_before_the_end_are_kept(tmp_path: P
         (Node("Boat"), "there is no type 'Boat'"),
     ],
 )
-def test_a_write_that_fails_is_an_error(tmp_path: Path, value: object, message: str) -> None:
+def test_a_write_that_memory_refuses_raises_an_error(tmp_path: Path, value: object, message: str) -> None:
     with simulate(desk, settings=at(tmp_path / "m.lbug")) as sim:
         sim.emit(said, value)
         [(rule, error)] = sim.failures
         assert rule == "desk:remember_guest" and message in str(error)
 
 
-def test_a_write_without_memory_is_an_error(tmp_path: Path) -> None:
+def test_a_write_to_a_bound_slot_without_memory_raises_an_error(tmp_path: Path) -> None:
     (tmp_path / "m.lbug").mkdir()
     with simulate(desk, settings=at(tmp_path / "m.lbug")) as sim:
         sim.emit(said, {"name": "Ada"})
@@ -226,7 +226,7 @@ def test_a_bound_slot_needs_a_module_that_requires_ontology() -> None:
         ontology.bound(rs.Module("alone"), "guest", "Person")
 
 
-def test_a_policy_with_bound_slots_has_no_faults() -> None:
+def test_bound_slots_cause_no_findings() -> None:
     policy = rs.compile(desk)
     assert "desk:remember_guest" in policy.rules
     assert [finding for finding in policy.findings() if "guest" in str(finding)] == []

@@ -1,4 +1,4 @@
-"""Files of types: their content, and clear errors."""
+"""Type files: their content, and the errors about their mistakes."""
 
 from __future__ import annotations
 
@@ -14,7 +14,7 @@ from ravestate.modules.meta.ontology.types import Types
 
 
 def read(tmp_path: Path, *texts: str) -> Types:
-    """Types of files that hold these texts: 0.yaml, 1.yaml, ..."""
+    """Write these texts to the files 0.yaml, 1.yaml, ..., and read their types."""
     files = [tmp_path / f"{number}.yaml" for number in range(len(texts))]
     for file, text in zip(files, texts, strict=True):
         file.write_text(text, encoding="utf-8")
@@ -115,7 +115,7 @@ def test_the_built_in_types_are_complete() -> None:
         ("{[a]: b}", 1, "a name is a text, but this is a sequence"),
     ],
 )
-def test_errors_name_file_and_line(tmp_path: Path, text: str, line: int, said: str) -> None:
+def test_errors_name_the_file_and_the_line(tmp_path: Path, text: str, line: int, said: str) -> None:
     file = tmp_path / "0.yaml"
     with pytest.raises(DeclarationError) as caught:
         read(tmp_path, text)
@@ -123,7 +123,7 @@ def test_errors_name_file_and_line(tmp_path: Path, text: str, line: int, said: s
     assert said.replace("FILE", str(file)) in str(caught.value)
 
 
-def test_files_that_contradict_each_other_are_refused(tmp_path: Path) -> None:
+def test_type_files_that_contradict_each_other_are_refused(tmp_path: Path) -> None:
     first = "Thing: {has: {name: text}}\nBoat: {is: Thing}\nCar: {is: Thing}"
     with pytest.raises(DeclarationError, match=r"1\.yaml:1: Boat is a Thing already \(.*0\.yaml:2\)"):
         read(tmp_path, first, "Boat: {is: Car}")
@@ -131,7 +131,7 @@ def test_files_that_contradict_each_other_are_refused(tmp_path: Path) -> None:
         read(tmp_path, first, "Boat: {has: {name: integer}}")
 
 
-def test_a_file_that_cannot_be_read_is_named(tmp_path: Path) -> None:
+def test_the_error_names_a_file_that_cannot_be_read(tmp_path: Path) -> None:
     (tmp_path / "types.yaml").touch()
     with pytest.raises(PlatformError, match=r"does not exist; did you mean 'types\.yaml'\?"):
         read_types([tmp_path / "typse.yaml"])

@@ -1,4 +1,4 @@
-"""One thread uses a store, and a process opens a file once."""
+"""A store is used by one thread only, and a process opens a file only once."""
 
 from __future__ import annotations
 
@@ -28,7 +28,7 @@ class Recorder:
         self.touch("close")
 
 
-def test_jobs_are_done_in_order_in_one_thread() -> None:
+def test_jobs_run_in_order_in_one_thread() -> None:
     log: list[str] = []
     worker = StoreWorker("here", lambda: Recorder(log))  # type: ignore[arg-type, return-value]
     replies = [worker.submit(lambda store, n=n: store.touch(str(n))) for n in range(50)]  # type: ignore[misc]
@@ -60,7 +60,7 @@ def test_a_failed_opening_fails_every_job() -> None:
     worker.release().result(20)
 
 
-def test_a_shared_store_is_opened_once_closed_last_and_opened_again_after() -> None:
+def test_a_shared_store_opens_once_closes_with_its_last_user_and_can_then_open_again() -> None:
     log: list[str] = []
     go_on = threading.Event()
 

@@ -1,4 +1,4 @@
-"""Intents as values."""
+"""Intents are values."""
 
 from ravestate.modules.meta.verbaliser.intents import Intent
 

@@ -1,4 +1,4 @@
-"""Phrase books: reading, merging and choosing. A message names the line of each mistake."""
+"""A phrase book reads and merges files, and chooses phrases. Its errors name the line of each mistake."""
 
 import random
 import re
@@ -38,7 +38,7 @@ def texts(found: PhraseBook, intent: str, language: str | None = None) -> list[s
     return [template.text for template in found.templates(intent, language)]
 
 
-def test_a_file_is_read(tmp_path: Path) -> None:
+def test_a_phrase_file_can_have_all_notations(tmp_path: Path) -> None:
     found = book(tmp_path, BASE)
     assert found.intents == ("greet", "farewell", "answer", "no")
     assert found.languages == ("de", "de-AT", "en", "no")
@@ -49,7 +49,7 @@ def test_a_file_is_read(tmp_path: Path) -> None:
     assert texts(found, "no", "no") == ["nei"]
 
 
-def test_a_book_reads_any_kind_of_path(tmp_path: Path) -> None:
+def test_a_phrase_book_can_be_loaded_from_strings_and_paths(tmp_path: Path) -> None:
     book(tmp_path, BASE)
     file = tmp_path / "phrases0.yaml"
     assert PhraseBook.load([str(file)]).intents == PhraseBook.load([file]).intents
@@ -88,7 +88,7 @@ def test_a_later_file_replaces_or_adds_phrases(tmp_path: Path) -> None:
     assert found.intents[-1] == "joke"
 
 
-def test_a_book_can_be_made_of_values() -> None:
+def test_a_phrase_book_can_be_made_from_a_dict() -> None:
     found = PhraseBook({"greet": {"de_at": ["Servus {name}!"]}}, language="de-AT")
     assert found.choose("greet", {"name": "Ada"}, random.Random(0)) == Phrase("Servus Ada!", "Servus {name}!")
     with pytest.raises(DeclarationError, match="name no parameter"):
@@ -128,7 +128,7 @@ def test_a_phrase_without_its_parameters_is_not_chosen() -> None:
     assert all_of(name="{other}", other=2) == {"Hi!", "Hi {other}!", "Hi {other} and 2!"}
 
 
-def test_doubled_braces_in_a_phrase_are_said_as_braces() -> None:
+def test_doubled_braces_in_a_phrase_become_single_braces() -> None:
     assert PhraseBook({"x": {"en": ["{{{a}}}"]}}).choose("x", {"a": 1}, random.Random()).text == "{1}"
 
 
@@ -145,7 +145,9 @@ def test_doubled_braces_in_a_phrase_are_said_as_braces() -> None:
         ),
     ],
 )
-def test_an_impossible_intent_has_a_message(intent: str, parameters: dict[str, object], message: str) -> None:
+def test_the_error_about_an_impossible_intent_says_why(
+    intent: str, parameters: dict[str, object], message: str
+) -> None:
     found = PhraseBook({"greet": {"en": ["Hi {name}!"]}, "only": {"fr": ["Oui."]}}, language="de-AT")
     with pytest.raises(RuleError, match=f"(?s){message}"):
         found.choose(intent, parameters, random.Random())
@@ -190,17 +192,17 @@ def test_an_impossible_intent_has_a_message(intent: str, parameters: dict[str, o
         ("a: hi {x!r:>3}", 1, "{x!r:>3} is not a parameter"),
     ],
 )
-def test_errors_name_file_and_line(tmp_path: Path, text: str, line: int, message: str) -> None:
+def test_errors_name_the_file_and_the_line(tmp_path: Path, text: str, line: int, message: str) -> None:
     with pytest.raises(DeclarationError, match=f"(?s)phrases1.yaml:{line}: .*(?:{message})"):
         book(tmp_path, BASE, text)
 
 
-def test_a_file_nested_without_end_is_refused(tmp_path: Path) -> None:
+def test_a_file_with_endless_nesting_is_refused(tmp_path: Path) -> None:
     with pytest.raises(DeclarationError, match=r"phrases0.yaml"):
         book(tmp_path, "a: " + "[" * 100_000)
 
 
-def test_a_missing_file_is_named(tmp_path: Path) -> None:
+def test_the_error_names_a_missing_file(tmp_path: Path) -> None:
     book(tmp_path, BASE)
     with pytest.raises(PlatformError, match=r"phrases\.yaml' does not exist; did you mean 'phrases0.yaml'\?"):
         PhraseBook.load([tmp_path / "phrases.yaml"])
@@ -208,7 +210,7 @@ def test_a_missing_file_is_named(tmp_path: Path) -> None:
         PhraseBook.load([tmp_path / "no" / "phrases.yaml"])
 
 
-def test_a_file_that_cannot_be_read_is_named(tmp_path: Path) -> None:
+def test_the_error_names_a_file_that_cannot_be_read(tmp_path: Path) -> None:
     with pytest.raises(PlatformError, match=f"{re.escape(repr(str(tmp_path)))} cannot be read: "):
         PhraseBook.load([tmp_path])
     (tmp_path / "latin.yaml").write_bytes(b"a: caf\xe9")
@@ -226,6 +228,6 @@ def test_a_file_that_cannot_be_read_is_named(tmp_path: Path) -> None:
         ("so {it}", "chess", "so chess"),
     ],
 )
-def test_a_parameter_at_the_beginning_has_a_capital(template: str, value: str, text: str) -> None:
+def test_a_phrase_that_begins_with_a_parameter_begins_with_a_capital(template: str, value: str, text: str) -> None:
     book = PhraseBook({"x": {"en": [template]}})
     assert book.choose("x", {"it": value}, random.Random(1)).text == text

@@ -1,4 +1,4 @@
-"""The verbaliser as a module: it says a phrase for each intent."""
+"""The module `verbaliser` says a phrase for each intent."""
 
 from itertools import pairwise
 from pathlib import Path
@@ -46,7 +46,7 @@ def test_the_verbaliser_says_a_phrase_for_an_intent() -> None:
     assert greeting in ("Hello!", "Hi there!", "Hello Ada!", "Hi Ada, good to see you!")
 
 
-def test_a_relative_path_begins_at_the_working_folder(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+def test_a_relative_path_starts_from_the_working_folder(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     for name in ("here", "there"):
         (tmp_path / name).mkdir()
         (tmp_path / name / "my.yaml").write_text(f"place: I am {name}.")
@@ -55,7 +55,7 @@ def test_a_relative_path_begins_at_the_working_folder(tmp_path: Path, monkeypatc
         assert said("place", phrases=["my.yaml"]) == [f"I am {name}."]
 
 
-def test_no_phrase_comes_twice_in_a_row_and_the_seed_decides() -> None:
+def test_no_phrase_comes_twice_in_a_row_and_the_seed_fixes_the_order() -> None:
     first = said(*["think"] * 20)
     assert all(one != next_one for one, next_one in pairwise(first))
     assert len(set(first)) == 3
@@ -64,7 +64,7 @@ def test_no_phrase_comes_twice_in_a_row_and_the_seed_decides() -> None:
 
 
 @pytest.mark.parametrize("seed", range(10))
-def test_no_phrase_comes_twice_in_a_row_for_intents_in_one_instant(seed: int) -> None:
+def test_no_phrase_comes_twice_in_a_row_even_for_simultaneous_intents(seed: int) -> None:
     with simulate(verbaliser, seed=seed) as sim:
         for _ in range(4):
             sim.context.put(verbaliser.intent, "think")
@@ -73,18 +73,18 @@ def test_no_phrase_comes_twice_in_a_row_for_intents_in_one_instant(seed: int) ->
     assert all(one != next_one for one, next_one in pairwise(sim.said))
 
 
-def test_each_context_has_a_language() -> None:
+def test_each_context_can_have_another_language() -> None:
     assert said("farewell", language="de-CH")[0] in ("Auf Wiedersehen!", "Bis bald!")
     assert said("farewell", language="fr")[0] in ("Goodbye!", "See you soon!")
 
 
-def test_own_phrases_replace_built_in_ones(tmp_path: Path) -> None:
+def test_phrases_from_the_settings_replace_built_in_phrases(tmp_path: Path) -> None:
     file = tmp_path / "mine.yaml"
     file.write_text("think: Arr…\njoke: Ha!")
     assert said("think", "joke", phrases=(file,)) == ["Arr…", "Ha!"]
 
 
-def test_an_intent_may_name_a_file_with_its_phrases(tmp_path: Path) -> None:
+def test_an_intent_can_name_a_file_with_its_phrases(tmp_path: Path) -> None:
     file, mine = tmp_path / "phrases.yaml", tmp_path / "mine.yaml"
     file.write_text("joke: Ho!\npun: Oh!")
     mine.write_text("joke: Ha!")
@@ -92,7 +92,7 @@ def test_an_intent_may_name_a_file_with_its_phrases(tmp_path: Path) -> None:
     assert said(Intent("joke", file=file), phrases=(mine,)) == ["Ha!"]
 
 
-def test_an_intent_may_name_a_package_with_its_phrases(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+def test_an_intent_can_name_a_package_with_its_phrases(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     package = tmp_path / "rav_test_phrases"
     package.mkdir()
     (package / "__init__.py").touch()
@@ -102,7 +102,7 @@ def test_an_intent_may_name_a_package_with_its_phrases(tmp_path: Path, monkeypat
     assert phrase_book("rav_test_phrases", (), "en").intents[0] == "greet"
 
 
-def test_an_impossible_intent_is_an_error() -> None:
+def test_an_impossible_intent_raises_an_error() -> None:
     assert isinstance(failure("gret"), RuleError)
     assert "did you mean 'greet'?" in str(failure("gret"))
     assert "there is no package 'no.where'" in str(failure(Intent("greet", package="no.where")))
@@ -111,7 +111,7 @@ def test_an_impossible_intent_is_an_error() -> None:
 
 
 @pytest.mark.parametrize("value", [None, "", 3, ["greet"]])
-def test_a_value_that_is_no_intent_is_refused(value: object) -> None:
+def test_a_value_that_is_not_an_intent_is_refused(value: object) -> None:
     with pytest.raises(RuleError, match=r"verbaliser.Intent\('greet', "):
         as_intent(value)
 
@@ -125,7 +125,7 @@ def test_each_built_in_intent_has_phrases_in_both_languages() -> None:
         assert min(len(english), len(german)) > 1
 
 
-def test_an_intent_may_bring_its_own_phrases() -> None:
+def test_an_intent_can_contain_its_phrases() -> None:
     own = Intent("greet", {"name": "Ada"}, phrases={"en": ["Ahoy {name}!", "Oh, {name}."], "de": ["Moin!"]})
-    assert set(said(own, own)) == {"Ahoy Ada!", "Oh, Ada."}  # no phrases of files, and none twice in a row
+    assert set(said(own, own)) == {"Ahoy Ada!", "Oh, Ada."}  # only its own phrases, and none twice in a row
     assert said(own, language="de-AT") == ["Moin!"]

@@ -1,4 +1,4 @@
-"""Files of landmarks; films, the last poses in view; and windows, the parts of a long recording."""
+"""Landmark files, films (the last poses in view) and windows (the parts of a long recording)."""
 
 from __future__ import annotations
 
@@ -52,7 +52,7 @@ def test_files_with_wrong_arrays_are_refused_with_a_reason(
         read(file)
 
 
-def test_files_that_are_missing_or_no_archives_are_refused(tmp_path: Path) -> None:
+def test_missing_files_and_files_that_are_not_archives_are_refused(tmp_path: Path) -> None:
     (tmp_path / "text.npz").write_text("hello")
     for name in ("text.npz", "missing.npz"):
         with pytest.raises(PlatformError, match=name):
@@ -75,7 +75,7 @@ def test_a_film_keeps_the_last_thirty_seconds() -> None:
     assert (film.poses[0].at, film.poses[-1].at) == (29.5, 59.5)
     assert [pose.at for pose in film.part(58.9, 100.0)] == [59.0, 59.5]
     assert film.with_pose(Pose(59.5, points)) is film
-    # If time goes back, the film drops the older poses: the clock is another one, or a video has begun again.
+    # Time goes back when another clock takes over or a video begins again. The film then drops the older poses.
     assert len(film.with_pose(Pose(1.0, points)).poses) == 1
     assert repr(film) == "Film(61 poses, 30.0 s)"
     assert repr(Film()) == "Film()"

@@ -10,9 +10,9 @@ from ravestate.modules.modality.activity import Pose, Recogniser
 from ravestate.modules.modality.activity.recogniser import Recognition
 
 RIGHT = 0.9
-"""It must recognise at least this share of held-out performances of known activities."""
+"""The minimum share of held-out performances of known activities that the recogniser must recognise."""
 REJECTED = 0.9
-"""It must reject at least this share of held-out performances of unknown movements."""
+"""The minimum share of held-out performances of unknown movements that the recogniser must reject."""
 
 
 def test_held_out_performances_are_recognised_and_unknown_movements_rejected() -> None:
@@ -33,7 +33,7 @@ def test_the_starter_set_has_the_activities_that_people_act_out(recogniser: Reco
 
 @pytest.mark.parametrize("demonstrations", [1, 3])
 def test_a_movement_is_learnt_from_a_few_demonstrations(demonstrations: int) -> None:
-    """Then the movement is recognised in other performers, too, and known activities are still recognised."""
+    """Later, the recogniser finds this movement in other performers too, and still finds the activities of before."""
     taught = ("archery", "skiing", "stretching", "golf", "sawing", "juggling")
     hits = 0
     for name in taught:
@@ -95,7 +95,7 @@ def test_an_activity_is_recognised_despite_a_few_broken_poses(recogniser: Recogn
 
 
 def test_the_starter_set_fits_the_performances_that_the_tool_makes(recogniser: Recogniser) -> None:
-    """An outdated file of the starter set would not recognise new performances from the same tool."""
+    """With an outdated starter set, the recogniser would not recognise the tool's new performances."""
     trials = starter.performances(starter.KNOWN, 4, camera.TAUGHT, 77)
     right = [recogniser.recognise_features(pair).name == name for name, pairs in trials.items() for pair in pairs]
     assert sum(right) / len(right) >= 0.95

@@ -1,4 +1,4 @@
-"""The module in virtual time: poses come in, activities come out, and lessons are kept."""
+"""The module `activity` in virtual time: it recognises activities from poses, and learns new ones."""
 
 from __future__ import annotations
 
@@ -15,7 +15,7 @@ from ravestate.testing import Simulation, simulate
 
 
 class Witness:
-    """A module that notes the recognised activities."""
+    """A module that records the recognised activities."""
 
     def __init__(self) -> None:
         self.seen: list[activity.Activity] = []

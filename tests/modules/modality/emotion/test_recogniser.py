@@ -1,4 +1,4 @@
-"""`recognise` on single sentences and odd texts. `tests/quality` measures how well it recognises feelings."""
+"""`recognise` finds a feeling in a sentence. `tests/quality` measures how well it recognises feelings."""
 
 import pytest
 

@@ -129,7 +129,7 @@ def test_a_setting_turns_the_emoji_off() -> None:
         assert sim.read(emotion.felt) == "shy"
 
 
-def test_any_rule_may_raise_a_feeling_before_or_after_it_speaks() -> None:
+def test_any_rule_can_raise_a_feeling_before_or_after_it_speaks() -> None:
     glad = rs.Module("glad", requires=[rawio, emotion])
 
     @glad.rule(when=rawio.input.changed, writes=rawio.output, emits=emotion.happy)

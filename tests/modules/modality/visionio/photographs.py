@@ -110,5 +110,5 @@ class Stage:
             sim.advance(1.0 / rate)
 
     def empty(self, sim: Any, seconds: float = 10.0) -> None:
-        """Show nobody for some seconds."""
+        """Show an empty scene for some seconds."""
         self.show(sim, seconds=seconds, rate=2.0)

@@ -1,4 +1,4 @@
-"""The agent keeps a face only after the person agrees, and forgets it at once if they ask."""
+"""The agent keeps a face only after the person agrees, and forgets it immediately if they ask."""
 
 from pathlib import Path
 from typing import Any
@@ -27,7 +27,7 @@ def chatter() -> Any:
     return module, speak
 
 
-def test_a_yes_to_another_question_is_no_permission_to_keep_a_face(memory: Path) -> None:
+def test_a_yes_to_another_question_does_not_permit_the_agent_to_keep_a_face(memory: Path) -> None:
     stage, (module, speak) = Stage(), chatter()
     with agent(memory, module) as sim:
         stage.show(sim, "biden")
@@ -42,7 +42,7 @@ def test_a_yes_to_another_question_is_no_permission_to_keep_a_face(memory: Path)
     assert remembered(memory) == {"Joe": 0}
 
 
-def test_only_visionio_answers_a_permission_or_a_wish_about_a_face(memory: Path) -> None:
+def test_only_visionio_answers_a_users_permission_or_request_about_their_face(memory: Path) -> None:
     stage = Stage()
     settings = {
         "visionio": {"source": ""},

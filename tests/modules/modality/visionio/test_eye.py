@@ -31,7 +31,7 @@ def eye() -> Iterator[Eye]:
 
 @pytest.fixture(scope="session")
 def clip(tmp_path_factory: pytest.TempPathFactory) -> Path:
-    """A video of one man for two seconds, and of another man for two seconds."""
+    """A video that shows one man for two seconds, and then another man for two seconds."""
     file = tmp_path_factory.mktemp("clip") / "two.mp4"
     make(CLIP, photo("obama"), photo("biden"), file)
     return file
@@ -116,8 +116,8 @@ def test_a_file_that_is_not_a_video_is_reported(eye: Eye, tmp_path: Path) -> Non
         run(eye.open(str(tmp_path / "bad.mp4")))
 
 
-def test_a_video_without_its_end_is_reported_or_ends(eye: Eye, tmp_path: Path, clip: Path) -> None:
-    """Only the first half of a Motion-JPEG file is there, as after a full disk."""
+def test_a_truncated_video_is_reported_or_ends(eye: Eye, tmp_path: Path, clip: Path) -> None:
+    """The file has only the first half of a Motion-JPEG video, as if the disk had been full."""
     file = tmp_path / "cut.avi"
     make(CLIP.replace("mp4v", "MJPG"), photo("obama"), photo("biden"), file)
     data = file.read_bytes()
@@ -151,7 +151,7 @@ def test_a_worker_that_dies_is_replaced_and_the_video_continues(clip: Path) -> N
         killed = eye.process.pid
         os.kill(killed, signal.SIGKILL)
         with pytest.raises(PlatformError, match="ended"):
-            for _ in range(3):  # the process may take a moment to die
+            for _ in range(3):  # the process can take a moment to die
                 await see(eye, 0.5)
         assert await see(eye, 1.0) == 1
         assert eye.process.pid not in (None, killed)
@@ -162,7 +162,7 @@ def test_a_worker_that_dies_is_replaced_and_the_video_continues(clip: Path) -> N
         eye.close()
 
 
-def test_the_worker_ends_with_its_last_user() -> None:
+def test_the_worker_ends_when_its_last_user_closes() -> None:
     from ravestate.modules._children import process as processes
 
     one = Eye()

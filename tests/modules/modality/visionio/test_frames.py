@@ -59,7 +59,7 @@ def test_next_returns_none_once_the_camera_is_closed() -> None:
 def test_taken_waits_until_next_has_returned_the_picture_or_the_camera_is_closed() -> None:
     async def watch() -> None:
         frames = Frames()
-        await frames.taken()  # returns at once, because there is no picture
+        await frames.taken()  # returns immediately, because there is no picture
         order: list[str] = []
 
         async def wait() -> None:

@@ -53,7 +53,7 @@ def test_nearest_returns_the_nearest_person_within_the_threshold(graph: Memory) 
     assert 0.6 < do(graph, lambda g: people.least(g, vector("six_1"))) < 1.0
 
 
-def test_nobody_is_recognised_if_two_people_are_equally_near(graph: Memory) -> None:
+def test_no_person_is_recognised_if_two_people_are_equally_near(graph: Memory) -> None:
     keep(graph, "Barack", "obama")
     keep(graph, "Bary", "obama")
     assert do(graph, lambda g: people.nearest(g, vector("obama3"), 0.55)) is None

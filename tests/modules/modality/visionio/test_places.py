@@ -1,4 +1,4 @@
-"""Finding a Python with the packages that the vision worker needs."""
+"""The vision worker finds a Python that has the packages it needs."""
 
 import sys
 from pathlib import Path

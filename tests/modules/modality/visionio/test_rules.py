@@ -152,7 +152,7 @@ def test_several_people_are_distinguished(memory: Path) -> None:
         assert len({one.node.id for one in sim.read(visionio.visitors).values()}) == 2
 
 
-def test_a_face_that_is_lost_for_a_moment_is_the_same_visitor(memory: Path) -> None:
+def test_a_face_that_is_lost_for_a_moment_still_belongs_to_the_same_visitor(memory: Path) -> None:
     stage = Stage()
     with agent(memory) as sim:
         stage.show(sim, "six_2")
@@ -164,8 +164,8 @@ def test_a_face_that_is_lost_for_a_moment_is_the_same_visitor(memory: Path) -> N
         assert one.tracks == {1, 2}
 
 
-def test_face_vectors_from_another_module_are_used_as_well(memory: Path) -> None:
-    """For example, a robot may have its own face recogniser."""
+def test_face_vectors_from_another_module_are_used_too(memory: Path) -> None:
+    """For example, a robot can have its own face recogniser."""
     ada = Node("Person", {"name": "Ada"})
     with agent(memory) as sim:
         for _ in range(3):
@@ -367,7 +367,7 @@ def test_a_user_can_take_back_a_name_that_they_have_told(memory: Path) -> None:
 
 
 def test_two_people_with_equal_names_and_similar_faces_become_one(memory: Path) -> None:
-    """The agent did not recognise Barack, as in bad light, and so memory has a second person with this name."""
+    """The agent did not recognise Barack, for example in bad light, so memory has a second person with his name."""
     stage = Stage()
     with agent(memory) as sim:
         meet(sim, stage, "obama", "Barack")

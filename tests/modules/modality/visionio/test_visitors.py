@@ -1,4 +1,4 @@
-"""Decisions about the faces of a track, and the visitors to whom tracks belong. The tests use short vectors."""
+"""Decisions about whose face a track shows, and which visitor it belongs to. The tests use short vectors."""
 
 from ravestate.modules.meta.ontology import Node
 from ravestate.modules.modality.visionio.face import FaceVec
@@ -82,6 +82,6 @@ def test_visitors_are_found_by_track_by_distance_to_the_camera_and_by_absence() 
 
 
 def test_the_reprs_of_faces_and_visitors_contain_no_vectors() -> None:
-    """Traces contain these texts."""
+    """A trace contains these reprs."""
     assert "Ada" in repr(face(0.123456, ADA)) and "0.123456" not in repr(face(0.123456, ADA))
     assert "0.98765" not in repr(Visitor("a", ADA, vectors=((1.0, (0.98765,)),)))

@@ -1,4 +1,4 @@
-"""Watching a camera: how failures are reported, and how often the agent looks."""
+"""The agent watches a camera: how often it looks, and how it reports failures."""
 
 import logging
 from pathlib import Path
@@ -42,7 +42,7 @@ class Blind:
 
 
 async def watched(monkeypatch: pytest.MonkeyPatch, eye: Blind, looks: int) -> list[float]:
-    """Look `looks` times; return the time for which the watch waited after each look (seconds)."""
+    """Look `looks` times; return how long the watch waited after each look (seconds)."""
     monkeypatch.setattr(watching, "Eye", lambda _: eye)
     watch = Watch(visionio.Settings(source="/dev/video0", fps=10, load=0.5), None, LOG)
     waits: list[float] = []
@@ -82,7 +82,7 @@ def test_a_lost_camera_is_reported_once_and_reopened_until_it_works(
     assert caplog.text.count("is it unplugged?") == 1 and caplog.text.count("sees again") == 1
 
 
-def test_the_agent_gives_up_a_file_that_fails_repeatedly(
+def test_the_agent_stops_reading_a_file_that_fails_repeatedly(
     monkeypatch: pytest.MonkeyPatch, caplog: pytest.LogCaptureFixture
 ) -> None:
     waits = run(watched(monkeypatch, Blind(100, live=False), 20))
@@ -156,7 +156,7 @@ def test_the_agent_looks_at_the_newest_picture_of_a_platform(tmp_path: Path) -> 
         frames.put(b"broken")
         sim.advance(0.3)
         assert frames.dropped == 3
-        sim.advance(10)  # no pictures come, as if the screen of a telephone were locked
+        sim.advance(10)  # no pictures come, as when a telephone's screen is locked
         assert not sim.read(visionio.visitors)
         for _ in range(3):
             frames.put(data)
@@ -168,7 +168,7 @@ def test_the_agent_looks_at_the_newest_picture_of_a_platform(tmp_path: Path) -> 
 
 
 def test_the_agent_looks_through_the_users_camera(tmp_path: Path) -> None:
-    """The agent asks for pictures at its own pace, marks the faces on the page, and notices when the camera goes off."""
+    """The agent asks for pictures at its own pace, marks faces on the page, and notices when the camera goes off."""
     user = UserCamera(photo("hanks").read_bytes())
     settings = {"visionio": {"source": "", "fps": 5}, "ontology": {"path": str(tmp_path / "m.lbug")}}
     with simulate(visionio.module, settings=settings) as sim:

@@ -1,4 +1,4 @@
-"""A user may ask the agent to remember or forget their face."""
+"""A user can ask the agent to remember or forget their face."""
 
 import pytest
 

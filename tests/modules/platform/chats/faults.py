@@ -1,4 +1,4 @@
-"""Faults of the file in which chats keep their messages."""
+"""Simulated faults of the file in which chats keep their messages."""
 
 import sqlite3
 from typing import Any
@@ -9,7 +9,7 @@ from ravestate.modules.platform.chats import Incoming, Store
 
 
 def fill_disk(monkeypatch: pytest.MonkeyPatch, attempts: int = 2) -> list[Exception]:
-    """Let the next attempts to keep a message fail, as on a full disk. Return the list of failures that remain."""
+    """Make the next attempts to store a message fail as on a full disk. Return the list of failures still to come."""
     take, failures = Store.take, list[Exception]([sqlite3.OperationalError("database or disk is full")] * attempts)
 
     def take_if_there_is_space(store: Store, message: Incoming) -> Any:

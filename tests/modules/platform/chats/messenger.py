@@ -75,7 +75,7 @@ class Post:
         return emoji == "👍"
 
     async def said(self, count: int) -> list[str]:
-        """Wait until there are `count` messages of the agent; return them as "chat: text"."""
+        """Wait until the agent has sent `count` messages; return them as "chat: text"."""
         async with self.news:
             await self.news.wait_for(lambda: len(self.sent) >= count)
         return [f"{each.chat}: {each.text}" for each in self.sent]
@@ -93,7 +93,7 @@ def letter(text: str = "", chat: str = "a", **fields: Any) -> Incoming:
 
 @contextlib.asynccontextmanager
 async def room(path: Path, post: Post, *modules: Any, **settings: Any) -> AsyncGenerator[Room]:
-    """Open the room of an agent. Without modules, the agent greets users and repeats their messages."""
+    """Open the room of an agent. If no modules are given, the agent greets users and repeats their messages."""
     agent = Agent(*(modules or (parrot,)), letters, settings={"letters": {"path": path / "letters.db", **settings}})
     async with Room(agent, "letters", post, "me") as opened:
         yield opened

@@ -1,4 +1,4 @@
-"""Names, mentions and commands in messages."""
+"""The agent recognises names, mentions and commands in messages."""
 
 import pytest
 

@@ -1,4 +1,4 @@
-"""Chats: slow answers, chats that close during an answer, groups, edits, and a file that cannot be written."""
+"""Chats with slow answers, chats that close meanwhile, groups, edits, and a file that cannot be written."""
 
 import contextlib
 from collections.abc import Generator
@@ -60,7 +60,7 @@ async def test_a_refusal_of_the_messenger_during_a_slow_answer_ends_only_that_ch
 
 
 @in_virtual_time
-async def test_a_user_who_leaves_and_returns_at_once_gets_an_answer(tmp_path: Path) -> None:
+async def test_a_user_who_leaves_and_immediately_returns_gets_an_answer(tmp_path: Path) -> None:
     post = Post()
     async with room(tmp_path, post, slow) as opened:
         opened.receive([letter(kind="left"), letter("I am back")])
@@ -76,8 +76,8 @@ async def test_a_user_who_leaves_and_returns_at_once_gets_an_answer(tmp_path: Pa
         assert len(post.sent) == 2
 
 
-class Leisurely(Post):
-    """A messenger that reports only after 2 s that the chat is closed."""
+class LateRefusal(Post):
+    """A messenger that takes 2 s to report that the chat is closed."""
 
     async def send(self, message: Outgoing, again: bool) -> str:
         if message.text == "one":
@@ -88,7 +88,7 @@ class Leisurely(Post):
 
 @in_virtual_time
 async def test_a_late_refusal_does_not_close_the_chat_of_a_user_who_has_returned(tmp_path: Path) -> None:
-    post = Leisurely()
+    post = LateRefusal()
     async with room(tmp_path, post, slow) as opened:
         opened.receive([letter("one")])
         await past(4.0)
@@ -193,7 +193,7 @@ def test_a_file_that_cannot_be_written_delays_an_answer_but_does_not_lose_it(tmp
 
 
 @in_virtual_time
-async def test_an_unasked_utterance_is_sent_as_soon_as_the_file_can_be_written_again(tmp_path: Path) -> None:
+async def test_an_unprompted_utterance_is_sent_once_the_file_can_be_written_again(tmp_path: Path) -> None:
     post = Post()
     herald = rs.Module("herald", requires=(rawio,))
     news = herald.signal("news", input=True)

@@ -1,4 +1,4 @@
-"""Rooms: chats with separate contexts, which rest and resume; failures of the messenger; people."""
+"""A room has all chats of an agent on one messenger. Each chat has its own context, which can rest and resume."""
 
 import asyncio
 import itertools
@@ -44,7 +44,7 @@ async def test_a_silent_chat_rests_and_later_resumes_without_a_greeting(tmp_path
 
 
 @in_virtual_time
-async def test_above_the_limit_the_chat_that_has_been_silent_longest_rests(tmp_path: Path) -> None:
+async def test_when_there_are_too_many_chats_the_one_that_was_silent_longest_rests(tmp_path: Path) -> None:
     post = Post()
     async with room(tmp_path, post, chats=2) as opened:
         for n, name in enumerate("abc", start=1):
@@ -57,7 +57,7 @@ async def test_above_the_limit_the_chat_that_has_been_silent_longest_rests(tmp_p
 
 
 @in_virtual_time
-async def test_many_new_chats_at_once_are_soon_reduced_to_the_limit(tmp_path: Path) -> None:
+async def test_after_a_rush_of_new_chats_only_as_many_as_the_limit_stay_awake(tmp_path: Path) -> None:
     post = Post()
     async with room(tmp_path, post, chats=5) as opened:
         opened.receive([letter("x", name) for name in "abcde"])
@@ -85,7 +85,7 @@ async def test_the_agent_hears_a_message_that_is_delivered_twice_only_once(tmp_p
 
 
 @in_virtual_time
-async def test_an_agent_that_has_left_returns_at_the_next_message(tmp_path: Path) -> None:
+async def test_an_agent_that_has_left_returns_when_the_next_message_comes(tmp_path: Path) -> None:
     quitter = rs.Module("quitter", requires=(rawio,))
 
     @quitter.rule(when=rawio.input.changed, writes=rawio.output)
@@ -102,7 +102,7 @@ async def test_an_agent_that_has_left_returns_at_the_next_message(tmp_path: Path
 
 
 @in_virtual_time
-async def test_a_slow_answer_may_be_interrupted(tmp_path: Path) -> None:
+async def test_a_new_message_can_interrupt_a_slow_answer(tmp_path: Path) -> None:
     slow = rs.Module("slow", requires=(rawio,))
 
     @slow.rule(when=rawio.input.changed, writes=rawio.output, until=rawio.input.changed)
@@ -116,7 +116,7 @@ async def test_a_slow_answer_may_be_interrupted(tmp_path: Path) -> None:
         await past(5.0)
         opened.receive([letter("stop")])
         assert await post.said(1) == ["a: You said stop."]
-        assert post.shown  # the chat has shown that the agent is writing
+        assert post.shown  # meanwhile the chat showed that the agent was writing
 
 
 @in_virtual_time
@@ -165,7 +165,7 @@ async def test_a_growing_answer_is_updated_about_once_a_second_and_becomes_one_m
 
 
 @in_virtual_time
-async def test_a_rule_may_send_a_picture_to_its_chat(tmp_path: Path) -> None:
+async def test_a_rule_can_send_a_picture_to_its_chat(tmp_path: Path) -> None:
     painter = rs.Module("painter", requires=(rawio,))
 
     @painter.rule(when=rawio.input.changed, reads=chat)
@@ -195,7 +195,7 @@ async def test_failed_deliveries_are_repeated_in_order_with_growing_pauses(tmp_p
 
 
 @in_virtual_time
-async def test_if_the_messenger_asks_to_wait_only_that_chat_is_delayed(tmp_path: Path) -> None:
+async def test_if_the_messenger_asks_to_wait_for_one_chat_only_this_chat_is_delayed(tmp_path: Path) -> None:
     post = Post()
     post.failures += [DeliveryError("too many messages", wait=30.0)]
     async with room(tmp_path, post) as opened:
@@ -273,7 +273,7 @@ async def test_in_a_group_each_person_is_a_user_of_the_agent(tmp_path: Path) -> 
 
 
 def remembering(tmp_path: Path, *steps: list[str]) -> list[str]:
-    """Run an agent with memory once for each list of messages; return all its answers. The loop is an ordinary one."""
+    """Run an agent with memory once for each list of messages; return all its answers. Time is real."""
     post = Post()
 
     async def talk() -> None:

@@ -1,4 +1,4 @@
-"""The sender: the rate of messages, refused voice notes, and a file that cannot be written."""
+"""The sender limits the rate of messages, and handles refused voice notes and a file that cannot be written."""
 
 import asyncio
 from pathlib import Path
@@ -11,10 +11,10 @@ from ravestate.modules.platform.chats.store import Answer
 
 
 @in_virtual_time
-async def test_spare_is_true_only_if_no_message_needs_the_turn() -> None:
+async def test_spare_is_true_only_if_a_turn_is_free_now() -> None:
     pace = Pace(20.0)
     await past(10.0)
-    while pace.spare():  # use up the turns of the burst
+    while pace.spare():  # use up the burst
         pass
     await pace.turn()
     assert not pace.spare()
@@ -48,7 +48,7 @@ async def test_a_voice_note_that_the_messenger_refuses_is_sent_as_text(tmp_path:
 
 
 class Stubborn(Post):
-    """A messenger. During its first two deliveries, the file becomes unwritable for 20 s."""
+    """A messenger. During each of its first two deliveries, the file becomes unwritable for 20 s."""
 
     def __init__(self) -> None:
         super().__init__()

@@ -1,4 +1,4 @@
-"""The store: messages that survive the death of a process, and messages that it forgets."""
+"""The store keeps messages when a process dies, and forgets messages on request or after some time."""
 
 import sqlite3
 import stat
@@ -82,7 +82,7 @@ def test_an_answer_is_queued_and_then_begun_and_then_sent(tmp_path: Path) -> Non
     assert store.recorded(entry.n) == []
 
 
-def test_an_edit_can_change_only_the_answer_to_the_newest_message(tmp_path: Path) -> None:
+def test_an_edit_changes_an_answer_only_if_its_message_is_the_newest(tmp_path: Path) -> None:
     store = opened(tmp_path)
     first = store.take(letter("one", id="m1"))
     assert first is not None
@@ -97,7 +97,7 @@ def test_an_edit_can_change_only_the_answer_to_the_newest_message(tmp_path: Path
     assert store.answer_to(late) is None
     unanswered = store.take(letter("five", id="m2", kind="edit"))
     assert unanswered is not None
-    assert store.answer_to(unanswered) is None  # an edit of the first message has come since
+    assert store.answer_to(unanswered) is None  # meanwhile, an edit of m1 was the newest message
 
 
 def test_a_message_is_dropped_after_several_crashes_but_not_after_clean_ends(tmp_path: Path) -> None:
@@ -181,7 +181,7 @@ def test_move_changes_the_chat_of_all_messages_of_a_chat(tmp_path: Path) -> None
     assert (item.message.chat, item.begun) == ("b", False)
 
 
-def test_only_one_process_may_open_the_file_and_only_the_user_may_read_it(tmp_path: Path) -> None:
+def test_only_one_process_can_open_the_file_and_only_the_user_can_read_it(tmp_path: Path) -> None:
     store = opened(tmp_path)
     with pytest.raises(PlatformError, match="another agent uses it"):
         opened(tmp_path)

@@ -1,4 +1,4 @@
-"""Voice notes with the real recogniser and voice, and without the packages for speech."""
+"""Voice notes with the real recogniser and voice. Without the speech packages, an error says what to install."""
 
 import asyncio
 import sys
@@ -24,7 +24,7 @@ def test_a_damaged_note_is_refused() -> None:
         asyncio.run(words_in(b"no sound at all"))
 
 
-def test_without_speech_the_error_says_what_to_install(monkeypatch: pytest.MonkeyPatch) -> None:
+def test_without_the_speech_packages_the_error_says_what_to_install(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setitem(sys.modules, VOICE, None)
     assert asyncio.run(spoken("Hello")) is None
     with pytest.raises(PlatformError, match=r"pip install 'ravestate\[voice\]'"):

@@ -47,10 +47,10 @@ def talk(folder: Path, *, redirected: bool) -> tuple[bytes, str]:
     seen = b""
     errors = b""
     typed = b""
-    again = 6  # type the keys at most this often: keys may be lost while the prompt is suspended
+    again = 6  # how often to type the keys at most: a suspended prompt can lose them
 
     def read() -> bool:
-        """Act as the terminal; return whether the other side is still open."""
+        """Act as the terminal; return whether the program's side is still open."""
         nonlocal seen, again
         while not select.select([ours], [], [], 5.0)[0]:
             again -= 1

@@ -1,4 +1,4 @@
-"""Reading and writing lines through pipes and files. The lines may contain any bytes."""
+"""Reading and writing lines through pipes and files. The lines can contain any bytes."""
 
 import asyncio
 import io
@@ -109,7 +109,7 @@ def test_read_returns_a_line_as_soon_as_it_arrives(pipe: Callable[[], Pipe]) -> 
     asyncio.run(main())
 
 
-def test_the_input_may_end_after_the_event_loop_has_ended(pipe: Callable[[], Pipe]) -> None:
+def test_the_input_can_end_after_the_event_loop_has_ended(pipe: Callable[[], Pipe]) -> None:
     reader, writer = pipe()
 
     async def main() -> None:
@@ -122,7 +122,7 @@ def test_the_input_may_end_after_the_event_loop_has_ended(pipe: Callable[[], Pip
     writer.close()
 
 
-def test_show_writes_lines_at_once(pipe: Callable[[], Pipe]) -> None:
+def test_show_immediately_writes_lines(pipe: Callable[[], Pipe]) -> None:
     reader, writer = pipe()
     pipes = Pipes(None, writer)
     pipes.show("hello\nyou")
@@ -140,7 +140,7 @@ def test_a_streamed_line_is_written_when_it_is_complete() -> None:
     assert out.getvalue() == "Hello\nyo\n"
 
 
-def test_a_terminal_shows_each_piece_at_once() -> None:
+def test_a_terminal_immediately_shows_each_piece() -> None:
     class Terminal(io.StringIO):
         def isatty(self) -> bool:
             return True

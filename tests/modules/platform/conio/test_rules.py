@@ -264,7 +264,7 @@ def test_the_setting_plain_avoids_the_terminal_library(monkeypatch: pytest.Monke
 
     def missing(*, screen: Any, **_: Any) -> Console:
         seen.append(screen)
-        raise PlatformError("no more of it")
+        raise PlatformError("this console stops here")
 
     monkeypatch.setattr(conio.rules, "Console", missing)
     with pytest.raises(PlatformError):

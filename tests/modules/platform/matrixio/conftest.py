@@ -140,7 +140,7 @@ class Account:
         return answer.raise_for_status().headers["Content-Type"]
 
     async def listen(self, count: int) -> list[str]:
-        """Wait until there are `count` messages of other people; return them as "room: text"."""
+        """Wait until other people have sent `count` messages; return them as "room: text"."""
         async with asyncio.timeout(60):
             while len(self.said) < count:
                 query = {"timeout": 30_000, **({"since": self._since} if self._since else {})}
@@ -181,7 +181,7 @@ async def register(server: Homeserver, http: httpx.AsyncClient, name: str, passw
 
 @asynccontextmanager
 async def accounts(server: Homeserver, *names: str) -> AsyncGenerator[list[Account]]:
-    """Create accounts with these names."""
+    """Create an account for each of these names."""
     async with httpx.AsyncClient(timeout=60.0, trust_env=False) as http:
         yield [await register(server, http, name) for name in names]
 

@@ -186,7 +186,7 @@ async def test_the_agent_answers_only_people_in_the_setting_allow(
 
 
 @live("Robin", "Ada")
-async def test_the_agent_continues_in_other_rooms_after_it_is_kicked_from_one(
+async def test_an_agent_that_is_kicked_from_one_room_continues_in_the_others(
     tmp_path: Path, robin: Account, ada: Account
 ) -> None:
     async with running(robin, tmp_path):
@@ -285,7 +285,7 @@ def test_events_that_cannot_be_stored_are_requested_again(
     assert not failures
 
 
-# Synapse refuses events that are worse than these.
+# Synapse itself refuses events that are more malformed than these.
 MALFORMED: list[tuple[str, dict[str, Any]]] = [
     ("m.room.message", {"msgtype": "m.text", "body": "x", "m.relates_to": 7}),
     ("m.room.message", {"msgtype": "m.text", "body": "x", "m.relates_to": {"rel_type": "m.replace"}}),

@@ -1,4 +1,4 @@
-"""The connection to a robot: turning the base, speaking, and wrong fields."""
+"""The connection to a robot turns its base and makes it speak. Wrong fields are refused."""
 
 import asyncio
 from typing import Any
@@ -30,7 +30,7 @@ class Base:
         self.speed = message["angular"]["z"]
 
     async def sleep(self, seconds: float) -> None:
-        """Let time pass on the clock of the base. Other waiting tasks run first."""
+        """Let time pass on the clock of the base. First, let other waiting tasks run."""
         end = self.now + seconds
         await turns(1)
         self.angle += self.speed * max(0.0, end - self.now)
@@ -113,7 +113,7 @@ def test_say_waits_until_the_robot_is_connected() -> None:
     asyncio.run(main())
 
 
-def test_the_message_names_a_field_that_the_message_type_does_not_have() -> None:
+def test_the_error_names_a_field_that_the_message_type_does_not_have() -> None:
     async def main() -> None:
         async with Bus(0) as bus, opened(ros2.make_node(ros2.Settings(backend="bus", bus=bus.address))) as node:
             wrong = Port(topic="/speech/say", type="std_msgs/String", field="dat")

@@ -80,7 +80,7 @@ def test_roboy_hears_and_answers_over_real_ros_1(ros1_network: Network) -> None:
                 await until(
                     lambda: any("hello" in looks["text"] for looks in seen), lambda: robot.hear("hello", 0.4), 0.5
                 )
-                # The direction has a separate topic, which may connect later.
+                # The direction has a separate topic, which can connect later.
                 await until(
                     lambda: any(looks["yaw"] == pytest.approx(0.4, abs=0.01) for looks in seen),
                     lambda: robot.hear("hello", 0.4),

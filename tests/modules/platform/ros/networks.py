@@ -26,7 +26,7 @@ from ravestate.runtime.clock import Clock
 
 HERE = Path(__file__).parent
 PATIENCE = 20.0
-"""A test fails if it waits longer than this (seconds)."""
+"""The time after which a waiting test fails (seconds)."""
 ROS2_PYTHON = Path(sys.prefix).parent / ".venvs" / "ros2" / "bin" / "python"
 OWN = HERE / "definitions"
 """A folder with the definitions of a message package that is not installed."""
@@ -52,7 +52,7 @@ def free_port() -> int:
 class Network(abc.ABC):
     """A network with one other node, the peer, in a separate process.
 
-    All nodes of the tests use one loop. So tests can share a node, and do not each start a bridge.
+    All nodes of the tests use one loop. So tests can share a node and its bridge.
     """
 
     version: int
@@ -202,12 +202,12 @@ async def opened(node: Node) -> AsyncIterator[Node]:
 
 
 async def pause(seconds: float) -> None:
-    """Wait for some real time, in which the other processes continue."""
+    """Wait for some real time, so that the other processes continue."""
     await Clock(asyncio.get_running_loop()).sleep(seconds)
 
 
 async def until(reached: Callable[[], object], again: Callable[[], None] = lambda: None, every: float = 0.02) -> None:
-    """Wait until a condition is true. Meanwhile, repeat the action `again`, because nodes take time to connect."""
+    """Repeat the action `again` until a condition is true. Nodes take time to connect, so one attempt is not enough."""
     async with asyncio.timeout(PATIENCE):
         while not reached():
             again()

@@ -12,7 +12,7 @@ from std_msgs.msg import Float32, Int32, String
 
 
 class Raw(genpy.Message):
-    """A message of any type, serialised."""
+    """A serialised message of any type."""
 
     __slots__ = ("data",)
     _slot_types = ("uint8[]",)

@@ -1,4 +1,4 @@
-"""Playing recorded bags in virtual time."""
+"""Recorded bags can be played in virtual time."""
 
 from pathlib import Path
 from typing import Any

@@ -126,7 +126,7 @@ def test_a_channel_with_a_rate_limit_skips_messages_but_never_the_latest() -> No
     asyncio.run(main())
 
 
-def test_the_calls_of_a_server_that_goes_away_fail_at_once() -> None:
+def test_the_calls_of_a_server_that_goes_away_fail_immediately() -> None:
     async def main() -> None:
         async with Bus(0) as bus, opened(on(bus)) as robot, opened(on(bus)) as agent:
             asked = asyncio.Event()
@@ -147,6 +147,6 @@ def test_the_calls_of_a_server_that_goes_away_fail_at_once() -> None:
             await robot.close()
             with pytest.raises(PlatformError, match="the node of the service is gone"):
                 await call
-            await until(lambda: not bus._calls)  # the bus has also forgotten the call that timed out
+            await until(lambda: not bus._calls)  # the bus has also dropped the call that timed out
 
     asyncio.run(main())

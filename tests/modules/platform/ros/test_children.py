@@ -1,4 +1,4 @@
-"""Code of the bridge processes that needs an exact timing, which a real network does not allow."""
+"""Code of the bridge processes whose tests need an exact timing, which a real network does not allow."""
 
 # pyright: basic
 import importlib

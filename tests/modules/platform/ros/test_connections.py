@@ -88,7 +88,7 @@ def test_a_new_channel_gets_only_the_newest_latched_message() -> None:
             loop.remove_reader(ours)
             connections.add(reader.channel(2))
 
-        loop.add_reader(ours, add)  # this runs in the same turn of the loop in which the new message is read
+        loop.add_reader(ours, add)  # this runs in the turn of the loop that also reads the new message
         signal.send(b"now")
         theirs.send(wire(b"new"))
         await until(lambda: reader.taken.get(2))
@@ -101,7 +101,7 @@ def test_a_new_channel_gets_only_the_newest_latched_message() -> None:
     run(main)
 
 
-def test_the_rate_limit_of_a_channel_counts_direct_and_bridged_messages_together() -> None:
+def test_the_rate_limit_of_a_channel_applies_to_direct_and_bridged_messages_together() -> None:
     async def main(reader: Reader, connections: Connections, theirs: socket.socket) -> None:
         channel = reader.channel(1, pause=1e6)
         bridge = partial(channel.offer, owed=True)
@@ -110,7 +110,7 @@ def test_the_rate_limit_of_a_channel_counts_direct_and_bridged_messages_together
         def end_of_pause() -> None:
             timer = channel.timer
             assert timer is not None
-            timer._run()  # type: ignore[attr-defined]  # without waiting for its time
+            timer._run()  # type: ignore[attr-defined]  # earlier than the timer would
             timer.cancel()
 
         connections.add(channel)
@@ -163,7 +163,7 @@ class Link:
         return self.sockets.pop()
 
     def subscriber(self, number: int) -> bytes:
-        """Hand over a connection with a new subscriber. Return the data that the subscriber gets at once."""
+        """Hand over a connection with a new subscriber. Return the data that the subscriber gets immediately."""
         ours, theirs = socket.socketpair()
         self.sockets.append(ours)
         what = {"topic": "/topic", "depth": 5}

@@ -31,7 +31,7 @@ async def echo(node: Node) -> list[str]:
 
 
 async def numbers(node: Node, got: list[int], count: int) -> list[int]:
-    """Let the peer publish `count` numbers, 1,000 per second; return those numbers that arrived in `got`."""
+    """Let the peer publish `count` numbers, 1,000 per second; return the numbers that arrived in `got`."""
     burst = node.advertise("/burst", "std_msgs/String", qos=ALL)
     await until(lambda: got, lambda: burst.publish("-1 1 0"))
     burst.publish(f"0 {count} 1000")
@@ -54,7 +54,7 @@ def test_every_message_of_a_fast_topic_arrives_in_order(either: Network) -> None
             node.subscribe(
                 "/numbers", "std_msgs/Int32", lambda message: got.append(message.data), latest=False, qos=ALL
             )
-            # A second channel of the topic may skip messages. The first channel must get them all the same.
+            # A second channel of the topic skips messages. Even so, the first channel must get all of them.
             node.subscribe("/numbers", "std_msgs/Int32", lambda message: None, qos=ALL)
             assert await numbers(node, got, 400) == list(range(400))
 

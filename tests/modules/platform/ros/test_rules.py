@@ -16,7 +16,7 @@ from ravestate.modules.platform.ros.rules import follow_clock
 ALL = quality(None, depth=10, latch=False)
 
 
-def test_the_clock_of_the_context_follows_that_of_a_simulation_at_any_speed() -> None:
+def test_the_clock_of_the_context_follows_the_clock_of_a_simulation_at_any_speed() -> None:
     agent = rs.Module("agent", requires=[ros2])
     go = agent.signal("go", input=True)
     waited: list[float] = []

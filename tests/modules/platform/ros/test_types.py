@@ -45,7 +45,7 @@ def test_plain_data_can_be_encoded_as_a_message_and_decoded_again(
         ("sensor_msgs/CameraInfo", {"header": {"stamp": {"sec": True}}}, "takes int32, not True"),
     ],
 )
-def test_the_message_names_a_value_that_does_not_fit_its_field(name: str, value: Any, words: str) -> None:
+def test_the_error_names_a_value_that_does_not_fit_its_field(name: str, value: Any, words: str) -> None:
     types = Types(2)
     with pytest.raises(PlatformError, match=words):
         types.encode(value, types.require(name))

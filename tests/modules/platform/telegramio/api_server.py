@@ -354,7 +354,7 @@ class Server:
         return message
 
     async def do_crowd(self, bot: str, messages: list[dict[str, Any]]) -> Any:
-        """Let many users write at once."""
+        """Let many users write at the same time."""
         for message in messages:
             await self.do_say(bot, **message)
 
@@ -401,7 +401,7 @@ class Server:
             del self.faults[key]
 
     async def do_said(self, bot: str, count: int = 0, wait: float = 100.0) -> Any:
-        """Wait until there are `count` messages of the bot, but at most `wait` seconds. Return its messages."""
+        """Wait until the bot has sent `count` messages, but at most `wait` seconds. Return its messages."""
 
         def said() -> list[Any]:
             rows = self.all("SELECT data FROM messages WHERE bot = ? AND own ORDER BY n", bot)
@@ -433,7 +433,7 @@ class Server:
         return json.loads(data)
 
     async def do_left(self, bot: str) -> Any:
-        """Return the number of unconfirmed updates."""
+        """Return how many updates the bot has not confirmed yet."""
         return len(self.updates(bot))
 
 

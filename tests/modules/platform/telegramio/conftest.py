@@ -63,7 +63,7 @@ class Bot:
         return await self.do("say", chat=chat, text=text, **fields)
 
     async def said(self, count: int) -> list[str]:
-        """Wait until there are `count` messages of the bot; return them as "chat: text"."""
+        """Wait until the bot has sent `count` messages; return them as "chat: text"."""
         return [f"{m['chat']['id']}: {m.get('text', m.get('caption'))}" for m in await self.do("said", count=count)]
 
 
@@ -77,7 +77,7 @@ def telegram(tmp_path_factory: pytest.TempPathFactory) -> Iterator[Telegram]:
 
 @pytest.fixture
 def own_telegram(tmp_path: Path) -> Iterator[Telegram]:
-    """A server that a test may kill."""
+    """A server that only one test uses, so the test can kill it."""
     server = Telegram(tmp_path)
     server.start()
     yield server

@@ -494,7 +494,7 @@ async def test_the_agent_ends_with_an_error_if_another_program_gets_its_messages
             await task
 
 
-def test_of_two_agents_with_one_bot_the_newer_one_ends(
+def test_if_two_agents_use_one_bot_the_newer_agent_ends(
     bot: Bot, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     @live
@@ -514,7 +514,7 @@ def test_of_two_agents_with_one_bot_the_newer_one_ends(
 
 
 @live
-async def test_a_second_agent_on_the_same_file_is_refused(bot: Bot, tmp_path: Path) -> None:
+async def test_a_second_agent_with_the_same_file_is_refused(bot: Bot, tmp_path: Path) -> None:
     async with running(bot, tmp_path):
         await bot.say(7, "Hello")
         await bot.said(1)

@@ -1,4 +1,4 @@
-"""Finding speech in sound: people's speech is found, but noise, music and silence do not count as speech."""
+"""The detector finds the speech of people in sound. It does not take noise, music or silence for speech."""
 
 import numpy as np
 import pytest

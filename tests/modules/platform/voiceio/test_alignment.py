@@ -12,7 +12,7 @@ def test_the_time_of_a_word_without_an_event_is_between_those_of_its_neighbours(
     assert times == sorted(times) and 1.0 < times[1] < times[2] < 1.6
 
 
-def test_one_spoken_word_may_consist_of_several_written_words() -> None:
+def test_one_spoken_word_can_consist_of_several_written_words() -> None:
     # The voice reports "there was" as one word of seven phonemes.
     words = by_phonemes("time there was a robot", [(0.0, 3), (0.4, 7), (0.9, 1), (1.0, 6)], 1.5)
     assert [round(word.time, 2) for word in words][:2] == [0.0, 0.4]
@@ -20,7 +20,7 @@ def test_one_spoken_word_may_consist_of_several_written_words() -> None:
     assert 0.4 < words[2].time < 0.9
 
 
-def test_one_written_number_may_be_several_spoken_words() -> None:
+def test_one_written_number_can_be_several_spoken_words() -> None:
     spoken = [(0.0, 2), (0.2, 3), (0.5, 6), (0.9, 4), (1.3, 5)]
     words = by_phonemes("in 1859 maybe", [*spoken[:4], (1.3, 5)], 2.0)
     assert [word.time for word in words] == [0.0, 0.2, 1.3]

@@ -1,4 +1,4 @@
-"""A line to audio devices: PortAudio's callbacks deliver blocks of sound, and an unplugged device is reopened."""
+"""A line to audio devices passes blocks of sound. It reopens a device that was unplugged."""
 
 from __future__ import annotations
 
@@ -195,7 +195,7 @@ def test_a_long_speech_ends_even_if_the_loudspeaker_is_lost(audio: PortAudio) ->
 
 
 @pytest.mark.parametrize(("broken", "setting"), [("microphone", "source"), ("loudspeaker", "sink")])
-def test_the_message_names_the_device_that_cannot_be_opened_and_its_setting(
+def test_the_error_names_a_device_that_cannot_be_opened_and_its_setting(
     audio: PortAudio, broken: str, setting: str
 ) -> None:
     audio.broken = broken

@@ -31,7 +31,7 @@ def test_speech_causes_the_events_onset_articulate_and_pause() -> None:
     assert turn is not None and ear.turn is None
     assert turn.start == pytest.approx(1.0, abs=0.12)
     assert pause - turn.end == pytest.approx(0.2, abs=0.05)
-    assert len(turn.sound) / 32000 > turn.end - turn.start + 0.3  # the sound includes a little silence at both ends
+    assert len(turn.sound) / 32000 > turn.end - turn.start + 0.3  # the sound has a little silence at both ends
 
 
 def test_speech_after_a_pause_continues_the_turn() -> None:

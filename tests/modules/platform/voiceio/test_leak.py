@@ -31,7 +31,7 @@ def chunks(begin: float, end: float) -> slice:
     return slice(round(begin * 16000 / CHUNK), round(end * 16000 / CHUNK))
 
 
-def test_a_user_who_continues_as_the_agent_begins_is_hidden_only_for_a_moment() -> None:
+def test_a_user_who_still_speaks_when_the_agent_begins_is_hidden_only_for_a_moment() -> None:
     for soft in (1.0, 0.1):
         user = soft * sound((0.9, spoken("The mountains, and my grandmother, and the old house near the sea.")))
         found, leak = hidden(user, sound((1.0, FAR)))
@@ -54,7 +54,7 @@ def test_an_echo_is_hidden_from_its_beginning() -> None:
 
 
 def test_an_echo_that_begins_later_is_noticed() -> None:
-    """For example, the user takes off the headphones."""
+    """This happens, for example, when the user takes off their headphones."""
     far = sound((0.5, FAR))
     leak = Leak()
     for near in (np.zeros(len(far)), room(far)):
@@ -74,7 +74,7 @@ def articulate(near: np.ndarray, far: np.ndarray) -> list[float]:
     return found
 
 
-def test_despite_an_echo_the_ear_hears_a_user_who_continues_as_the_agent_begins() -> None:
+def test_despite_an_echo_the_ear_hears_a_user_who_still_speaks_when_the_agent_begins() -> None:
     """The canceller does not know the room yet. It must not learn from the user's voice that the echo is loud."""
     for voice in ("piper", "espeak:en-us"):
         far, user = sound((0.5, spoken(FAR, voice))), sound((0.7, "Do you know a story about an old ship?"))

@@ -1,4 +1,4 @@
-"""Downloading models: the files that remain after a failure."""
+"""A failed download of a model keeps the parts that it has fetched, and leaves no empty folder."""
 
 from pathlib import Path
 

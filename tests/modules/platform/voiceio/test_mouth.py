@@ -1,4 +1,4 @@
-"""The mouth: growing text, the part that the user has heard, and speech that is held."""
+"""The mouth speaks growing text, knows which part the user has heard, and can hold its speech."""
 
 import asyncio
 
@@ -94,7 +94,7 @@ def test_released_speech_continues_with_the_word_that_was_cut() -> None:
         assert one.heard(TEXT) == "one two three"
         one.release()
         await one.played_out()
-        assert asyncio.get_running_loop().time() == pytest.approx(1.3 + 5.0 + 1.5)  # it says "three" once more
+        assert asyncio.get_running_loop().time() == pytest.approx(1.3 + 5.0 + 1.5)  # the mouth says "three" once more
         assert one.heard(TEXT) == TEXT
 
     run(listen)

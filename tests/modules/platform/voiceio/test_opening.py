@@ -1,4 +1,4 @@
-"""Opening and closing a spoken conversation with all its parts, and its verdicts on what it hears."""
+"""A spoken conversation opens and closes all its parts, and judges the sound that it hears."""
 
 import asyncio
 import gc
@@ -218,7 +218,7 @@ def test_a_recognition_that_fails_after_its_rule_was_cancelled_is_not_reported(m
 @pytest.mark.parametrize(
     ("text", "confidence", "length", "what"),
     [
-        ("Amen.", 0.5, 0.3, "false_alarm"),  # a recogniser may take a hum for this word
+        ("Amen.", 0.5, 0.3, "false_alarm"),  # a recogniser can take a hum for this word
         ("Mm-hmm.", 0.5, 0.5, "back_channel"),
         ("Stop.", 0.5, 0.3, "utterance"),
         ("Why?", 0.8, 0.3, "utterance"),

@@ -1,4 +1,4 @@
-"""The pitch of speech shows whether one or two people speak."""
+"""The pitch of speech shows whether one person or two people speak."""
 
 from pathlib import Path
 

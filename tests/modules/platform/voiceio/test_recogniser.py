@@ -1,4 +1,4 @@
-"""Recognition of speech with real models, and the results for other sounds."""
+"""Recognition of speech with real models, and what the recogniser does with other sounds and failures."""
 
 import runpy
 import threading
@@ -38,7 +38,7 @@ def test_recordings_of_people_are_recognised_with_few_errors() -> None:
 
 
 def test_the_words_of_a_short_sound_are_not_repeated() -> None:
-    """In a short sound, the model may miss the end of the speech and begin again."""
+    """In a short sound, the model sometimes misses the end of the speech, and begins again."""
     small = Recogniser(Settings(model="tiny.en"))
     for text in ("Dinner is ready.", "I have never been so happy.", "Can we start again?"):
         found = small.recognise(bytes(9600) + spoken(text) + bytes(6400))
@@ -80,7 +80,7 @@ def test_a_grammar_recognises_its_commands_and_no_other_words() -> None:
     commands.close()
 
 
-def test_the_message_for_a_missing_grammar_has_its_name(tmp_path: Path) -> None:
+def test_the_error_names_a_missing_grammar(tmp_path: Path) -> None:
     with pytest.raises(PlatformError, match=r"there is no file 'none\.gram'"):
         Recogniser(Settings(recogniser="grammar", model="none.gram"))
 
@@ -93,7 +93,7 @@ def test_a_grammar_with_a_fault_is_refused(tmp_path: Path) -> None:
     broken.close()
 
 
-def test_the_message_about_a_missing_model_says_what_to_do() -> None:
+def test_the_error_about_a_missing_model_says_what_to_do() -> None:
     with pytest.raises(PlatformError, match=r"no model 'huge'; there are: .*ravestate voice get huge"):
         Recogniser(Settings(model="huge"))
 
@@ -137,7 +137,7 @@ def test_after_a_crash_the_recogniser_tries_once_more(monkeypatch: pytest.Monkey
 
 
 def test_a_long_recording_is_recognised_in_pieces(monkeypatch: pytest.MonkeyPatch) -> None:
-    """The time limit applies to each piece, so a recording may have any length."""
+    """The time limit applies to each piece, so a recording can have any length."""
     small = Recogniser(Settings(model="tiny.en"))
     texts = list(transcriptions(LIBRIVOX / "transcription").items())[:5]
     texts += texts[:1]

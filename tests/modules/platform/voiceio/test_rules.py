@@ -33,7 +33,7 @@ TELL = (0.5, "Please tell me a story.")
 
 
 def script(monkeypatch: pytest.MonkeyPatch, *texts: str | Exception, confidence: float = 0.9) -> Scripted:
-    """Replace the recogniser: it returns these texts, whatever the sound."""
+    """Replace the recogniser by one that returns these texts for any sound."""
     one = Scripted(*texts, confidence=confidence)
     monkeypatch.setattr(opening, "Recogniser", one)
     return one
@@ -78,7 +78,7 @@ def test_the_agent_hears_a_request_and_its_answer_can_be_heard(tmp_path: Path) -
 
 
 def test_the_same_recording_gives_the_same_conversation(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
-    """The sound of the voice depends on earlier sentences. But another user of the voice must not change it."""
+    """The sound of the voice depends on earlier sentences. But speech for other purposes must not change it."""
     file = wav(tmp_path / "in.wav", track(TELL, (5.0, "No, stop."), length=8.0))
     other = Synthesiser(Settings(voice=FAST["voiceio"]["voice"]))
     runs: list[tuple[list[Said], str]] = []
@@ -92,7 +92,7 @@ def test_the_same_recording_gives_the_same_conversation(tmp_path: Path, monkeypa
 
 
 @pytest.mark.parametrize("name", ["piper", "espeak:en-us"])
-def test_a_user_who_continues_as_the_agent_begins_interrupts_the_agent(
+def test_a_user_who_still_speaks_when_the_agent_begins_interrupts_the_agent(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch, name: str
 ) -> None:
     heard = script(monkeypatch, "Tell me a story.", "About the sea, and my grandmother.")
@@ -112,7 +112,7 @@ def test_a_user_who_continues_as_the_agent_begins_interrupts_the_agent(
     assert heard.heard[-1] > 2.2  # the recogniser got the whole rest of the sentence
 
 
-def test_the_user_interrupts_and_the_agent_stops_at_once(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+def test_the_user_interrupts_and_the_agent_stops_immediately(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     script(monkeypatch, "Tell me a story.", "Stop, that is enough.")
     file = wav(tmp_path / "in.wav", track(TELL, (5.0, "Stop, that is enough."), length=8.0))
     said = talk(file, tmp_path / "out.wav", storyteller(), settings=FAST)
@@ -231,7 +231,7 @@ def test_pieces_are_spoken_once_and_a_different_output_is_spoken_after_them(
     tmp_path: Path,
     monkeypatch: pytest.MonkeyPatch,
 ) -> None:
-    """The pieces may end in a space that the output lacks. The rule does not set the flag ``rawio.speaking``."""
+    """The pieces can end with a space that the output lacks. The rule does not set the flag ``rawio.speaking``."""
     script(monkeypatch, "Tell me a story.")
     file = wav(tmp_path / "in.wav", track(TELL, length=3.0))
     said = talk(file, None, teller(pieces, *outputs), settings=settings(filler_after=0))
@@ -253,7 +253,7 @@ def test_a_pause_within_a_sentence_does_not_end_the_turn(tmp_path: Path, monkeyp
     file = wav(tmp_path / "in.wav", track((0.5, "I would like to hear a"), (2.4, "good story."), length=4.0))
     said = talk(file, None, storyteller(), settings=FAST)
     assert sides(said, "user") == ["I would like to hear a good story."]
-    assert scripted.heard[1] > scripted.heard[0] + 1.0  # the second time, the recogniser got the whole turn
+    assert scripted.heard[1] > scripted.heard[0] + 1.0  # at its second call, the recogniser got the whole turn
 
 
 def test_the_words_of_two_people_are_two_utterances(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
@@ -344,10 +344,10 @@ def test_if_a_platform_serves_users_voiceio_uses_its_line_and_opens_no_device(
         assert sim.read(voiceio.conversation) is None
 
 
-def test_a_line_that_a_platform_provides_at_once_is_opened_only_once(
+def test_a_line_that_a_platform_provides_at_the_start_is_opened_only_once(
     monkeypatch: pytest.MonkeyPatch, tmp_path: Path
 ) -> None:
-    """A page may provide its line as soon as the context starts."""
+    """A page can provide its line as soon as the context starts."""
 
     from modules.platform.voiceio.test_wav_line import run
     from ravestate.modules.platform.voiceio.wav_line import WavLine
@@ -373,7 +373,7 @@ def test_a_line_that_a_platform_provides_at_once_is_opened_only_once(
 
 
 def test_an_output_that_cannot_be_written_ends_the_agent(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
-    """The agent ends at once, or at the end of the conversation if the file has become unwritable by then."""
+    """An impossible path ends the agent at the start. A file that becomes unwritable later ends it at the end."""
     script(monkeypatch, "Hello.")
     file, out = wav(tmp_path / "in.wav", track(TELL, length=2.0)), tmp_path / "out.wav"
     with pytest.raises(PlatformError, match=r"ends in \.wav"):

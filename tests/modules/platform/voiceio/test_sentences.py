@@ -35,7 +35,7 @@ def test_chinese_and_japanese_sentences_end_without_a_space() -> None:
         "从前有一个机器人，它住在博物馆里。",
         "有一天晚上，它听到了奇怪的声音！",
     ]
-    assert list(sentences("这是一个很长很长的句子吗？", whole=False)) == []  # a closing quotation mark may follow
+    assert list(sentences("这是一个很长很长的句子吗？", whole=False)) == []  # a closing quotation mark can follow
     quoted = "「昔々、ロボットがいたそうです。」と彼女は静かに言いました。次"
     assert [sentence for _, sentence in sentences(quoted, whole=False)] == [
         "「昔々、ロボットがいたそうです。」",

@@ -71,7 +71,7 @@ def test_a_folder_that_cannot_be_written_is_refused(tmp_path: Path) -> None:
 
 def test_a_long_sound_is_cut_at_quiet_moments() -> None:
     loud = np.random.default_rng(0).normal(0, 3000, 16000 * 70).astype("<i2")
-    for second in (10, 24, 45):  # quiet moments; a cut at the first one would be too early
+    for second in (10, 24, 45):  # three quiet moments; a cut at the first would be too early
         loud[16000 * second : 16000 * second + 6400] //= 50
     found = list(sound.pieces(loud.tobytes(), 16000, 28.0))
     assert b"".join(found) == loud.tobytes()

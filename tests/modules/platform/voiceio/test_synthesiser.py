@@ -1,4 +1,4 @@
-"""Voices: sound and the times of its words, prosody, and messages about missing voices."""
+"""A voice turns text into sound, with the time of each word and a prosody. Missing voices are reported."""
 
 import itertools
 
@@ -36,7 +36,7 @@ def test_prosody_changes_the_pitch_of_espeak() -> None:
     assert low != high
 
 
-def test_the_message_for_a_missing_voice_has_its_name() -> None:
+def test_the_error_names_a_missing_voice() -> None:
     with pytest.raises(PlatformError, match="has no voice 'en_US-nobody'"):
         Synthesiser(Settings(voice="en_US-nobody"))
     nobody = Synthesiser(Settings(voice="espeak:xx-none"))

@@ -1,4 +1,4 @@
-"""Recognising the end of a turn, back-channels, and echoes of the agent's own words."""
+"""The agent recognises the end of a turn, back-channels, and echoes of its own words."""
 
 import pytest
 
@@ -96,7 +96,7 @@ def test_is_echo_recognises_the_agents_own_words() -> None:
     assert is_echo("It lived in a museum.", own)
     assert is_echo("lived in the museum", own + " It lived in a")
     assert not is_echo("Where did it live?", own)
-    assert not is_echo("museum", own)  # the user may ask a question with this one word
+    assert not is_echo("museum", own)  # the user can ask a question with this single word
 
 
 def test_the_melody_distinguishes_complete_sentences_from_unfinished_ones() -> None:

@@ -1,4 +1,4 @@
-"""Voice notes: a text becomes an OGG file, and the recogniser finds the same words in it."""
+"""A voice note is made from a text as an OGG file. The recogniser finds the same words in this file."""
 
 from pathlib import Path
 

@@ -54,7 +54,7 @@ def test_the_output_file_has_the_same_timeline_as_the_recording(tmp_path: Path) 
                 assert line.played == pytest.approx(0.5)
                 line.stop()
             if now == pytest.approx(1.5):
-                await line.drained()  # returns at once, because nothing is queued
+                await line.drained()  # returns immediately, because nothing is queued
                 line.play(b"\2\2" * (SECOND // 4))
                 await line.drained()
                 assert asyncio.get_running_loop().time() == pytest.approx(2.0)
@@ -84,7 +84,7 @@ def test_a_missing_recording_is_refused(tmp_path: Path) -> None:
 
 
 @pytest.mark.parametrize("name", ["folder.wav", "none/out.wav", "out.mp3", "out"])
-def test_an_output_file_that_cannot_be_written_is_refused_at_once(name: str, tmp_path: Path) -> None:
+def test_an_output_file_that_cannot_be_written_is_refused_immediately(name: str, tmp_path: Path) -> None:
     (tmp_path / "folder.wav").mkdir()
     with pytest.raises(PlatformError, match="cannot write"):
         WavLine(None, tmp_path / name)

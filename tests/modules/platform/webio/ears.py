@@ -9,13 +9,13 @@ import ravestate as rs
 from ravestate.modules import rawio
 
 LOUD = 0.02
-"""A block of sound with at least this level is loud. The maximum level is 1."""
+"""The level from which a block of sound counts as loud. The maximum level is 1."""
 
 PAUSE = 0.4
-"""An utterance ends after this many seconds of quiet."""
+"""The time of quiet that ends an utterance (seconds)."""
 
 WORD = 0.3
-"""The agent plays a tone of this length for each word (seconds)."""
+"""The length of the tone that the agent plays for each word (seconds)."""
 
 ears = rs.Module("ears", requires=(rawio,))
 level = ears.slot("level", 0.0)

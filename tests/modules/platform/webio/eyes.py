@@ -10,7 +10,7 @@ JPEG = b"\xff\xd8\xff\xe0 a picture"
 
 eyes = rs.Module("eyes", requires=(rawio,))
 glance = eyes.signal("glance", input=True)
-"""The agent asks for a picture when this signal is raised."""
+"""The signal that makes the agent ask for a picture."""
 pictures: rs.Slot[tuple[bytes | None, ...]] = eyes.slot("pictures", ())
 """The pictures that the agent has received; None if the camera went off meanwhile."""
 

@@ -85,7 +85,7 @@ async def hello(socket: ClientConnection, **fields: Any) -> dict[str, Any]:
 
 
 async def talk(socket: ClientConnection, said: Sequence[str]) -> None:
-    """Say some texts, and check that the agent repeats each of them."""
+    """Say these texts, and check that the agent repeats each of them."""
     for text in said:
         await socket.send(json.dumps({"type": "say", "id": text.replace(" ", "-"), "text": text}))
         answered = ""

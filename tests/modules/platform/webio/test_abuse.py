@@ -1,4 +1,4 @@
-"""Hostile and broken clients: they cost the server little, and other visitors do not notice them."""
+"""Hostile and broken clients cost the server little, and other visitors do not notice them."""
 
 import asyncio
 import contextlib
@@ -85,7 +85,7 @@ async def test_a_message_of_ten_megabytes_in_small_pieces_is_refused() -> None:
 
 
 @on_loop
-async def test_a_limit_bounds_the_connections_that_send_no_request() -> None:
+async def test_the_number_of_connections_that_send_no_request_is_limited() -> None:
     with Served(per_address=100) as served:
         async with unharmed(served, megabytes=16):
             open_before = served.files()
@@ -102,7 +102,7 @@ async def test_a_limit_bounds_the_connections_that_send_no_request() -> None:
 
 
 @on_loop
-async def test_a_limit_bounds_the_websockets_that_send_no_hello() -> None:
+async def test_the_number_of_websockets_that_send_no_hello_is_limited() -> None:
     with Served(patience=2.0, per_address=100) as served:
         async with unharmed(served, megabytes=24):
             open_before = served.files()
@@ -110,7 +110,7 @@ async def test_a_limit_bounds_the_websockets_that_send_no_hello() -> None:
             for _ in range(1000):
                 with contextlib.suppress(InvalidStatus, InvalidMessage, OSError):
                     sockets.append(await served.connect())
-                assert served.files() - open_before <= 101  # one more may be closing
+                assert served.files() - open_before <= 101  # one more is perhaps still closing
             assert len(sockets) >= 50
             for one in sockets:
                 assert json.loads(await one.recv())["code"] == "silent"
@@ -148,7 +148,7 @@ async def test_a_client_that_stops_reading_is_dropped_and_costs_little() -> None
             with upgraded(served) as deaf:
                 deaf.sendall(masked('{"type": "hello", "v": 1}'))
                 deaf.setblocking(False)
-                # The agent repeats each text, so megabytes of answers would wait for this client.
+                # The agent repeats each text, so megabytes of answers wait for this client.
                 with contextlib.suppress(BlockingIOError, ConnectionError):
                     for number in range(400):
                         deaf.sendall(masked(json.dumps({"type": "say", "id": f"{number}", "text": text})))

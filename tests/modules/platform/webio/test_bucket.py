@@ -1,4 +1,4 @@
-"""The token bucket allows a burst of events at once, and then a fixed rate."""
+"""The token bucket first allows a burst of events, and then a fixed rate."""
 
 from hypothesis import given
 from hypothesis import strategies as st

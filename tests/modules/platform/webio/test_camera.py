@@ -111,7 +111,7 @@ async def test_turning_the_camera_on_in_a_window_turns_it_off_in_the_other() -> 
 
 
 @in_virtual_time
-async def test_an_agent_may_refuse_the_camera_and_use_it_again_later() -> None:
+async def test_an_agent_can_refuse_the_camera_and_use_it_again_later() -> None:
     async with watching() as (session, visit, _):
         first = session.context.read(rawio.camera)
         assert first is not None

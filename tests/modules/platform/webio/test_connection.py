@@ -1,4 +1,4 @@
-"""A connection: its protocol, its limits, and its reactions to faulty clients."""
+"""A connection follows the protocol, keeps its limits, and reacts to faulty clients."""
 
 import asyncio
 import json
@@ -134,7 +134,7 @@ async def test_frames_about_writing_do_not_count_for_the_limit_of_texts() -> Non
 
 
 @in_virtual_time
-async def test_a_text_after_many_frames_about_writing_is_heard_at_once() -> None:
+async def test_a_text_after_many_frames_about_writing_is_heard_immediately() -> None:
     async with page() as app, Visit(app) as visit:
         await visit.hello()
         await visit.messages(1)

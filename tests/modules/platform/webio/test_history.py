@@ -1,4 +1,4 @@
-"""The history of a conversation numbers its messages without gaps, and limits their number and their total length."""
+"""The history numbers the messages of a conversation without gaps, and limits their count and total length."""
 
 from hypothesis import given
 from hypothesis import strategies as st
@@ -39,7 +39,7 @@ def test_a_message_longer_than_the_limit_of_the_history_is_cut() -> None:
     assert [message.text for message in history.since(0)] == ["x" * 10]
 
 
-def test_messages_may_be_added_while_the_history_is_read() -> None:
+def test_messages_can_be_added_while_the_history_is_read() -> None:
     history = History(messages=2)
     history.add("agent", "one", 0)
     seen: list[int] = []

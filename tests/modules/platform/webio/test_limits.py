@@ -199,7 +199,7 @@ async def test_the_server_drops_a_client_that_keeps_sending_after_the_answer() -
 async def test_the_server_drops_a_client_that_does_not_read_the_answer() -> None:
     caller = Caller(Reader(after=1.0))
     caller.send(request(5) + b"hello")
-    caller.limits.pause_writing()  # the transport would call this if the client read nothing
+    caller.limits.pause_writing()  # a real transport calls this if the client reads nothing
     await past(5 * TIMEOUT)
     assert caller.hung_up == 2 * TIMEOUT
 

@@ -1,4 +1,4 @@
-"""The audio line to a page: blocks and streams of sound, the position of the loudspeaker, and browser windows."""
+"""The audio line to a page passes sound in both directions, and knows how much the loudspeaker has played."""
 
 import asyncio
 
@@ -69,7 +69,7 @@ async def test_after_the_microphone_goes_off_the_agent_hears_silence() -> None:
     line.take(window := Speaker(line))
     line.hear(window, b"\x01" * BLOCK)
     line.leave(window)
-    line.hear(window, b"\x02" * BLOCK)  # too late, because the window has left
+    line.hear(window, b"\x02" * BLOCK)  # too late: this window no longer has the line
     blocks = await taken(line, 101)
     assert blocks == [b"\x01" * BLOCK, *[bytes(BLOCK)] * 100]
 
@@ -88,7 +88,7 @@ async def test_played_is_the_reported_position_plus_a_short_estimate() -> None:
     await past(0.1)
     assert line.played == 0.6  # the line assumes that the loudspeaker has continued
     await past(1.0)
-    assert line.played == 0.7  # but without a report, it assumes this only for a short time
+    assert line.played == 0.7  # it assumes this only for a short time without a report
     window.played(0.6)
     assert line.played == 0.7  # the position never decreases
     window.played(1.0)
@@ -160,7 +160,7 @@ async def test_only_one_window_has_the_line_and_the_other_gets_a_message() -> No
 
 
 @in_virtual_time
-async def test_without_a_window_all_sound_counts_as_played_at_once() -> None:
+async def test_without_a_window_all_sound_immediately_counts_as_played() -> None:
     line = PageLine()
     line.play(tone(1.5))
     await line.drained()

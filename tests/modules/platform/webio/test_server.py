@@ -1,4 +1,4 @@
-"""The web server: its answers, its addresses, its end, and the documented client."""
+"""The web server: its answers, addresses and checks, its end, and the client in the documentation."""
 
 import asyncio
 import io
@@ -144,7 +144,7 @@ async def test_a_token_with_a_control_character_is_refused_and_not_logged() -> N
 
 
 def served_by(monkeypatch: pytest.MonkeyPatch, terminals: str) -> tuple[str, str]:
-    """Return the announcements of a server with a token on both outputs. `terminals` names those that are terminals."""
+    """Return what a server with a token prints on both outputs. `terminals` names the outputs that are terminals."""
     written = {"stdout": io.StringIO(), "stderr": io.StringIO()}
     for name, output in written.items():
         output.isatty = lambda name=name: name in terminals  # type: ignore[method-assign]
@@ -271,7 +271,7 @@ def test_the_documented_client_gets_an_answer(
 ) -> None:
     said = ask(served.host).stdout.splitlines()
     assert "hi" in said
-    assert set(said) <= {"hi", "Hello!"}  # the greeting may come first
+    assert set(said) <= {"hi", "Hello!"}  # the greeting can come before the answer
 
 
 def test_the_documented_client_says_when_no_server_listens(

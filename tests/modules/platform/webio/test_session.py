@@ -1,4 +1,4 @@
-"""Conversations: visitors who are writing, the agent's name, and the reasons for the end."""
+"""In a conversation: visitors who are writing, the agent's name, and the reason for the end."""
 
 import asyncio
 
@@ -137,7 +137,9 @@ async def test_the_page_shows_the_agents_name_and_later_its_new_name() -> None:
         async with Visit(app) as again:
             assert (await again.hello(session=visit.session, last=2))["agent"] == "Elske"
             visit.tell("bye")
-            assert (await again.next())["type"] == "ended"  # no `renamed` before it, because the welcome had the name
+            assert (await again.next())[
+                "type"
+            ] == "ended"  # no frame `renamed` comes before it, because the welcome had the name
         async with Visit(app) as other:
             await other.hello()
             # Another conversation has its own name for the agent.

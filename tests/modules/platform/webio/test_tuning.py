@@ -1,4 +1,4 @@
-"""While a page is served, the Python interpreter has settings for a low latency."""
+"""A server changes settings of the Python interpreter for a low latency, and restores them at its end."""
 
 import contextlib
 import gc

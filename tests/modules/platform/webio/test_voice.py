@@ -244,7 +244,7 @@ async def test_an_utterance_ends_when_the_microphone_goes_off() -> None:
 
 
 @in_virtual_time
-async def test_a_visitor_may_leave_while_the_agent_speaks() -> None:
+async def test_a_visitor_can_leave_while_the_agent_speaks() -> None:
     async with calling() as (app, caller):
         caller.speak()
         await caller.until("sound")

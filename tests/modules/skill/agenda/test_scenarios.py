@@ -1,4 +1,4 @@
-"""Agents with several goals, in virtual time: the order of the goals, and their interruptions."""
+"""Agents with several goals, in virtual time: the order of the goals, and interruptions by the user."""
 
 from itertools import pairwise
 
@@ -10,7 +10,7 @@ from ravestate.modules.skill.agenda import Goal, GoalState
 from ravestate.testing import Simulation, simulate
 
 PATIENT = {"idle": {"remarks": 100}}
-"""Settings of an agent that pursues goals however long the user is silent."""
+"""Settings of an agent that continues to pursue goals during a long silence of the user."""
 AT_ONCE = {"agenda": {"gap": 0.0}, "idle": {"bored_after": 5.0, "answer_time": 0.0, "remarks": 100}}
 
 
@@ -40,7 +40,7 @@ def chatter(seconds: float = 0.0) -> rs.Module:
     return talk
 
 
-def test_a_goal_is_pursued_after_a_silence_and_done_once_its_text_is_said() -> None:
+def test_a_goal_is_pursued_after_a_silence_and_is_done_when_its_text_has_been_said() -> None:
     guide = agent()
     goal = agenda.goal(guide, "ice_cream", say="Do you know my ice cream?")
     with simulate(guide) as sim:
@@ -82,7 +82,7 @@ def test_while_a_goal_rests_for_its_cool_down_other_goals_are_pursued() -> None:
     assert all(30 <= b - a <= 40 for a, b in pairwise(song))
 
 
-def test_each_try_says_the_next_text_and_after_the_last_the_goal_is_dropped() -> None:
+def test_each_try_says_the_next_text_and_the_goal_is_dropped_after_the_last_try() -> None:
     guide = agent()
     never = guide.signal("never")
     goal = agenda.goal(guide, "game", say=["A game?", "Come on!"], cooldown=60, done=never, tries=3)
@@ -167,7 +167,7 @@ def test_a_refused_goal_is_dropped() -> None:
         assert sim.said == ["A game?", "I see."]
 
 
-def test_words_that_come_too_late_are_no_answer() -> None:
+def test_words_that_come_too_late_do_not_count_as_an_answer() -> None:
     guide = agent()
     goal = agenda.goal(guide, "game", say="A game?", done="yes", cooldown=20, tries=9)
     with simulate(guide) as sim:
@@ -178,7 +178,7 @@ def test_words_that_come_too_late_are_no_answer() -> None:
         assert goal.state(sim).status == "pursued"
 
 
-def test_one_signal_may_end_two_goals_at_once() -> None:
+def test_one_signal_can_end_two_goals() -> None:
     guide = agent()
     goals = [
         agenda.goal(guide, name, say=name, done=rawio.input.changed.where(lambda text: text == "both"))
@@ -189,7 +189,7 @@ def test_one_signal_may_end_two_goals_at_once() -> None:
         assert [goal.state(sim).status for goal in goals] == ["done", "done"]
 
 
-def test_an_answer_to_a_goal_may_have_a_rule_of_its_own() -> None:
+def test_a_rule_of_the_designer_can_react_to_the_answer_to_a_goal() -> None:
     guide = agent()
     offer = agenda.goal(guide, "offer", say="Shall we play a game?", done="yes")
 
@@ -270,7 +270,7 @@ def test_a_goal_that_is_reached_while_its_text_is_made_is_not_said() -> None:
         assert goal.state(sim).status == "done"
 
 
-def test_a_goal_that_waits_for_a_rival_yields_to_the_user() -> None:
+def test_a_goal_that_waits_for_a_rival_is_not_said_if_the_user_speaks() -> None:
     guide = agent()
     slow = rs.Module("slow", requires=[idle, rawio])
     ready = slow.signal("ready")
@@ -288,7 +288,7 @@ def test_a_goal_that_waits_for_a_rival_yields_to_the_user() -> None:
         assert sim.said == ["I see."]
 
 
-def test_a_function_may_make_the_text_from_slots() -> None:
+def test_a_function_can_make_the_text_from_slots() -> None:
     guide = agent()
     name = guide.slot("name", "Ada")
     agenda.goal(guide, "game", say=lambda ctx: f"{ctx[name]}, shall we play?", reads=name)
@@ -378,7 +378,7 @@ def test_explain_check_and_graph_show_a_goal() -> None:
     with simulate(policy) as sim:
         sim.advance(8.0)
         assert "finished" in str(sim.explain("guide:game"))
-        sim.advance(22.0)  # the user has time to answer the question, and then the gap between goals must pass
+        sim.advance(22.0)  # first the user has time to answer the question, and then the gap between goals passes
         assert "it was pursued" in str(sim.explain("guide:game"))
         assert "rests for another" in str(sim.explain("guide:game"))
 

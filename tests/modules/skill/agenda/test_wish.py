@@ -1,4 +1,4 @@
-"""Goals from an agent's file."""
+"""Goals that come from the settings, for example from an agent's file."""
 
 import logging
 from typing import Any
@@ -14,7 +14,7 @@ def agent(*wishes: dict[str, Any], **settings: Any) -> Simulation:
     return simulate(agenda, settings={"agenda": {"goals": wishes, **settings}, "idle": {"remarks": 100}})
 
 
-def test_goals_from_the_settings_are_pursued_like_goals_in_code() -> None:
+def test_goals_in_the_settings_are_pursued_like_goals_in_code() -> None:
     with agent(
         {"name": "ice_cream", "say": "Do you know my ice cream?"},
         {"name": "game", "say": ["A game?", "Come on!"], "priority": 2, "done": "yes|sure", "tries": 2},
@@ -52,7 +52,7 @@ def test_a_faulty_goal_in_the_settings_is_refused_before_the_agent_runs(wish: di
     assert any(message in str(fault) for fault in caught.value.exceptions)
 
 
-def test_two_goals_with_one_name_are_refused() -> None:
+def test_two_goals_with_the_same_name_are_refused() -> None:
     with pytest.raises(rs.DeclarationErrors) as caught:
         agent({"name": "a", "say": "x"}, {"name": "a", "say": "y"})
     assert "two goals are named 'a'" in str(caught.value.exceptions[0])

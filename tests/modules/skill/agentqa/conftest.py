@@ -10,5 +10,5 @@ from ravestate.modules.skill.agentqa.router import router_of
 
 @pytest.fixture(scope="session")
 def router() -> Router:
-    """Return the router of the module's own life, which contexts share."""
+    """Return the router of the built-in life, which all contexts share."""
     return router_of(read_life())

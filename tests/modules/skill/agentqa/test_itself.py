@@ -41,10 +41,10 @@ def changed(**facts: Any) -> Life:
 def test_memory_has_each_relation_and_type_that_the_agents_facts_need() -> None:
     types = types_of(ontology.Settings())
     for relation, type in RELATIONS.values():
-        types.check_relation("Robot", relation, type)  # raises if memory has no such relation
+        types.check_relation("Robot", relation, type)  # raises an error if memory has no such relation
 
 
-def test_each_start_updates_the_agents_node_from_the_life_file(with_memory: Any) -> None:
+def test_each_start_updates_the_agents_node_in_memory_from_the_life_file(with_memory: Any) -> None:
     async def first(memory: ontology.Memory) -> None:
         node = await settle(LIFE, memory)
         assert node["born"] == date(2020, 5, 4)
@@ -60,7 +60,7 @@ def test_each_start_updates_the_agents_node_from_the_life_file(with_memory: Any)
     with_memory(second)
 
 
-def test_settling_a_second_time_changes_nothing(with_memory: Any) -> None:
+def test_storing_the_same_facts_a_second_time_changes_nothing(with_memory: Any) -> None:
     async def use(memory: ontology.Memory) -> None:
         await settle(LIFE, memory)
         before = await memory.export()
@@ -70,7 +70,7 @@ def test_settling_a_second_time_changes_nothing(with_memory: Any) -> None:
     with_memory(use)
 
 
-def test_answers_come_from_memory_in_the_order_of_the_file(with_memory: Any) -> None:
+def test_facts_come_from_memory_in_the_order_of_the_life_file(with_memory: Any) -> None:
     async def use(memory: ontology.Memory) -> None:
         node = await settle(LIFE, memory)
         await memory.relate(node, "has_hobby", await memory.ensure("Hobby", name="juggling"))
@@ -83,7 +83,7 @@ def test_answers_come_from_memory_in_the_order_of_the_file(with_memory: Any) -> 
     with_memory(use)
 
 
-def test_memory_keeps_facts_that_the_file_does_not_mention(with_memory: Any) -> None:
+def test_memory_keeps_facts_that_the_life_file_does_not_mention(with_memory: Any) -> None:
     async def use(memory: ontology.Memory) -> None:
         node = await settle(LIFE, memory)
         await memory.relate(node, "friend_of", await memory.ensure("Person", name="Ada"))
@@ -96,7 +96,7 @@ def test_memory_keeps_facts_that_the_file_does_not_mention(with_memory: Any) -> 
     with_memory(use)
 
 
-def test_without_a_node_in_memory_the_facts_come_from_the_file(with_memory: Any) -> None:
+def test_without_a_node_in_memory_the_facts_come_from_the_life_file(with_memory: Any) -> None:
     async def use(memory: ontology.Memory) -> None:
         assert await recall(LIFE, memory) == LIFE.facts
 

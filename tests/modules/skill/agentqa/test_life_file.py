@@ -1,4 +1,4 @@
-"""A life file: its format, its changes to the built-in life, and the messages for its mistakes."""
+"""A life file: its format, its changes to the built-in life, and the errors about its mistakes."""
 
 from __future__ import annotations
 
@@ -48,7 +48,7 @@ def life_of(text: str, tmp_path: Path) -> Life:
     return read_life(file)
 
 
-def test_the_life_that_comes_with_the_module_is_whole() -> None:
+def test_the_built_in_life_is_complete_and_repeats_no_question() -> None:
     life = read_life()
     assert list(life.topics) == TOPICS
     assert life.born is not None and life.name == "Ravestate"
@@ -56,7 +56,7 @@ def test_the_life_that_comes_with_the_module_is_whole() -> None:
     assert len(questions) == len(set(questions))
 
 
-def test_remarks_are_added_and_may_be_a_topic_of_their_own(tmp_path: Path) -> None:
+def test_a_life_file_can_add_remarks_to_a_topic_or_as_a_new_topic(tmp_path: Path) -> None:
     life = life_of(
         "topics: {distress: {remarks: rain again}, praise: {remarks: [well done], phrases: Thanks.}}", tmp_path
     )
@@ -64,7 +64,7 @@ def test_remarks_are_added_and_may_be_a_topic_of_their_own(tmp_path: Path) -> No
     assert life.topics["praise"].remarks == ("well done",)
 
 
-def test_acts_are_added_by_the_names_that_nlp_knows(tmp_path: Path) -> None:
+def test_a_life_file_can_add_dialogue_acts_that_nlp_knows(tmp_path: Path) -> None:
     life = life_of("topics: {thanks: {acts: [thanks, praise], phrases: Any time.}, insult: {acts: anger}}", tmp_path)
     assert life.topics["thanks"].acts == ("thanks", "praise")
     assert life.topics["insult"].acts == ("insult", "anger")
@@ -72,7 +72,7 @@ def test_acts_are_added_by_the_names_that_nlp_knows(tmp_path: Path) -> None:
         life_of("topics: {thanks: {acts: thank, phrases: Any time.}}", tmp_path)
 
 
-def test_a_fact_is_replaced_added_or_taken_away_and_the_rest_stays(tmp_path: Path) -> None:
+def test_a_life_file_can_replace_add_or_remove_a_fact_and_the_others_stay(tmp_path: Path) -> None:
     life = life_of(
         "facts: {name: Robin, born: 2020-02-29, hobbies: [chess], home: ~, wheels: 3, siblings: []}", tmp_path
     )
@@ -83,7 +83,7 @@ def test_a_fact_is_replaced_added_or_taken_away_and_the_rest_stays(tmp_path: Pat
     assert life.topics == read_life().topics
 
 
-def test_a_topic_adds_its_questions_and_replaces_its_phrases(tmp_path: Path) -> None:
+def test_a_topic_in_a_life_file_adds_its_questions_and_replaces_its_phrases(tmp_path: Path) -> None:
     life = life_of(
         """
         topics:
@@ -153,7 +153,7 @@ def test_a_mistake_is_reported_with_its_line(text: str, told: str, tmp_path: Pat
     assert told in str(caught.value)
 
 
-def test_a_file_that_cannot_be_read_says_why(tmp_path: Path) -> None:
+def test_the_error_says_why_a_life_file_cannot_be_read(tmp_path: Path) -> None:
     (tmp_path / "robin.yaml").write_bytes(b"facts: {name: \xff}")
     with pytest.raises(DeclarationError, match="not UTF-8 text"):
         read_life(tmp_path / "robin.yaml")
@@ -163,7 +163,7 @@ def test_a_file_that_cannot_be_read_says_why(tmp_path: Path) -> None:
         read_life(tmp_path)
 
 
-def test_a_mistake_is_reported_before_anything_runs(tmp_path: Path) -> None:
+def test_a_mistake_in_a_life_file_is_reported_before_anything_runs(tmp_path: Path) -> None:
     file = tmp_path / "robin.yaml"
     file.write_text("facts: {born: soon}")
     with pytest.raises(DeclarationErrors) as caught, simulate(agentqa, settings={"agentqa": {"life": file}}):

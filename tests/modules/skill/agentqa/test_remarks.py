@@ -1,4 +1,4 @@
-"""Rules for every remark. The set ``agentqa_remarks`` measures how well remarks are understood."""
+"""Properties of any remark. The quality set ``agentqa_remarks`` measures how well remarks are understood."""
 
 from __future__ import annotations
 
@@ -18,7 +18,7 @@ def test_neither_an_empty_nor_a_very_long_text_is_a_remark(text: str) -> None:
     assert remark_in(text, read_life()) is None
 
 
-def test_the_agent_may_be_called_by_its_name() -> None:
+def test_a_remark_can_call_the_agent_by_its_name() -> None:
     life = read_life()
     rude = Topic("rude", (), ("Hm.",), remarks=("you are rude",))
     life = Life(life.facts, {**life.topics, "rude": rude})
@@ -27,13 +27,13 @@ def test_the_agent_may_be_called_by_its_name() -> None:
     assert found is not None and found.topic == "rude"
 
 
-def test_of_several_remarks_the_gravest_counts() -> None:
+def test_the_gravest_of_several_remarks_counts() -> None:
     found = remark_in("You are stupid. My cat died. I want to die.", read_life())
     assert found is not None and (found.topic, found.text) == ("distress", "i want to die")
 
 
 @pytest.mark.parametrize("text", ["please don't stay silent", "do not shut up, I like it", "I never told you to hush"])
-def test_a_negated_wish_for_quiet_does_not_count(text: str) -> None:
+def test_the_opposite_of_a_wish_for_quiet_does_not_count_as_one(text: str) -> None:
     bundled_matcher("acts").load()
     assert "quiet" not in acts(heard(text))
 
@@ -41,12 +41,12 @@ def test_a_negated_wish_for_quiet_does_not_count(text: str) -> None:
 @pytest.mark.parametrize(
     "text", ["please don't disturb me now", "do not say one more word to me", "I asked you to be silent"]
 )
-def test_a_wish_for_quiet_may_be_negated_itself(text: str) -> None:
+def test_a_wish_for_quiet_can_contain_a_negation(text: str) -> None:
     bundled_matcher("acts").load()
     assert "quiet" in acts(heard(text))
 
 
-def test_a_mild_word_beside_a_question_is_no_insult() -> None:
+def test_a_mild_insult_beside_a_question_is_ignored_unless_it_names_the_agent() -> None:
     for name in MATCHERS:
         bundled_matcher(name).load()
     life = read_life()
@@ -55,5 +55,5 @@ def test_a_mild_word_beside_a_question_is_no_insult() -> None:
 
 
 @pytest.mark.parametrize("text", ["ok. bus 12 or 15 for the station?", "okay okay. who would be king of the moon?"])
-def test_an_okay_before_a_question_does_not_ask_how_the_agent_is(router: Router, text: str) -> None:
+def test_okay_before_a_question_does_not_count_as_how_are_you(router: Router, text: str) -> None:
     assert isinstance(router.route(text, question=True), Miss)

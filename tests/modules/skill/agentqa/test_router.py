@@ -1,4 +1,4 @@
-"""Rules for the routing of every question. The set ``agentqa_asks`` measures how often the routing is right."""
+"""Properties of the routing of any question. The quality set ``agentqa_asks`` measures how often it is right."""
 
 from __future__ import annotations
 
@@ -19,13 +19,13 @@ def topic(router: Router, text: str, **more: bool) -> str:
     return found.topic if isinstance(found, Match) else "-"
 
 
-def test_each_example_is_understood_as_what_it_stands_for(router: Router) -> None:
+def test_each_example_question_is_routed_to_its_own_topic(router: Router) -> None:
     for one in router.life.topics.values():
         wrong = [q for q in one.questions if topic(router, q) != one.name]
         assert not wrong, (one.name, wrong)
 
 
-def test_a_match_has_the_nearest_example_its_score_and_its_margin(router: Router) -> None:
+def test_a_match_has_the_nearest_example_with_a_score_and_a_margin(router: Router) -> None:
     found = router.route("How old are you?")
     assert isinstance(found, Match)
     assert found.question == found.example == "how old are you"
@@ -38,7 +38,7 @@ def test_a_miss_names_the_nearest_topic_and_the_reason_against_it(router: Router
     assert "is nearest to " in found.reason and "but nearer to what is not about me (" in found.reason
 
 
-def test_the_first_sentence_with_a_topic_counts(router: Router) -> None:
+def test_the_first_sentence_with_a_topic_decides(router: Router) -> None:
     assert topic(router, "What do you mean? I am Tom. How old are you? Where do you live?") == "age"
 
 
@@ -54,7 +54,7 @@ def test_a_topic_that_the_designer_adds_is_distinguished_from_the_others() -> No
 @pytest.mark.parametrize(
     "text", ["", "🙂", "\x00\x1b[31m", "a" * 100_000, "word " * 20_000, "مرحبا كيف حالك", "Il pleut.", "you " * 50_000]
 )
-def test_nonsense_and_long_texts_are_left_to_others(text: str, router: Router) -> None:
+def test_nonsense_and_long_texts_are_left_to_other_modules(text: str, router: Router) -> None:
     assert isinstance(router.route(text, question=True), Miss)
 
 
@@ -62,7 +62,7 @@ def test_an_indirect_question_counts_if_the_utterance_is_a_question(router: Rout
     assert topic(router, "I have been asking myself for weeks how old you are", question=True) == "age"
 
 
-def test_without_numpy_the_examples_themselves_are_understood(monkeypatch: pytest.MonkeyPatch) -> None:
+def test_without_numpy_only_the_exact_example_questions_are_understood(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr("ravestate.language.acts.bundled_matcher", bundled_matcher.__wrapped__)  # not the cached one
     monkeypatch.setitem(sys.modules, "numpy", None)
     router = Router(read_life())
@@ -71,7 +71,7 @@ def test_without_numpy_the_examples_themselves_are_understood(monkeypatch: pytes
     assert isinstance(router.route("what is your name?"), Match)
 
 
-def test_a_missing_model_says_what_to_do(tmp_path: Path) -> None:
+def test_the_error_about_a_missing_model_names_its_file(tmp_path: Path) -> None:
     router = Router(read_life(), Encoder(tmp_path / "none"))
     with pytest.raises(PlatformError, match=r"model\.onnx"):
         router.route("how old are you")
@@ -92,7 +92,7 @@ def test_a_missing_model_says_what_to_do(tmp_path: Path) -> None:
         ("do you ever fall ill?", "health"),
     ],
 )
-def test_greetings_and_questions_about_its_nature_are_told_from_how_are_you(text: str, topic: str | None) -> None:
+def test_greetings_and_questions_about_its_nature_are_not_taken_for_how_are_you(text: str, topic: str | None) -> None:
     router = Router(read_life())
     router.load()
     found = router.route(text, question="?" in text)

@@ -28,7 +28,7 @@ from ravestate.modules.meta.verbaliser.intents import Intent
 from ravestate.modules.skill.agentqa import Router
 from ravestate.testing import Simulation, simulate
 
-pytestmark = pytest.mark.usefixtures("router")  # the model is loaded, and the topics are learnt
+pytestmark = pytest.mark.usefixtures("router")  # loads the model and the topics
 
 chatter = rs.Module("chatter", requires=[rawio])
 encyclopaedia = rs.Module("encyclopaedia", requires=[nlp, verbaliser])
@@ -82,7 +82,7 @@ def phrases(sim: Simulation, topic: str) -> tuple[str, ...]:
     return (*life.topics[topic].phrases, *life.topics[topic].otherwise)
 
 
-def test_questions_about_the_agent_are_answered_and_nobody_else_speaks(tmp_path: Path) -> None:
+def test_agentqa_alone_answers_questions_about_the_agent(tmp_path: Path) -> None:
     own = """
     facts: {name: Robin, hobbies: [chess], friends: [Ada, Bob]}
     topics:
@@ -114,13 +114,13 @@ def test_questions_about_the_agent_are_answered_and_nobody_else_speaks(tmp_path:
         ("🙂\x00\x1b[2J مرحبا", "chatter"),
     ],
 )
-def test_everything_else_is_left_to_others(text: str, who: str, tmp_path: Path) -> None:
+def test_all_other_utterances_are_left_to_other_modules(text: str, who: str, tmp_path: Path) -> None:
     with start(tmp_path, chatter, encyclopaedia) as sim:
         assert say(sim, text) == who
         assert sim.failures == []
 
 
-def test_agentqa_wins_against_another_module_with_an_answer_in_any_order_of_declaration() -> None:
+def test_agentqa_wins_against_another_answering_module_whatever_the_order_of_modules() -> None:
     for modules in ((agentqa, encyclopaedia), (encyclopaedia, agentqa)):
         pair = {"agentqa:answer", "encyclopaedia:explain"}
         [conflict] = [one for one in rs.compile(*modules).conflicts() if {one.first, one.second} == pair]
@@ -135,7 +135,9 @@ def test_agentqa_wins_against_another_module_with_an_answer_in_any_order_of_decl
         ("you are a stupid piece of junk", "insult"),
     ],
 )
-def test_distress_and_insults_are_answered_before_all_else(text: str, topic: str, tmp_path: Path) -> None:
+def test_the_reply_to_distress_or_an_insult_comes_before_any_other_answer(
+    text: str, topic: str, tmp_path: Path
+) -> None:
     busy = rs.Module("busy", requires=[verbaliser])
 
     @busy.rule(when=rawio.input.changed.where(bool), writes=verbaliser.intent, weight=9.0)
@@ -148,7 +150,7 @@ def test_distress_and_insults_are_answered_before_all_else(text: str, topic: str
         assert say(sim, "it is warm") == "busy"
 
 
-def test_listeners_get_the_topic_of_a_remark(tmp_path: Path) -> None:
+def test_other_rules_can_react_to_the_topic_of_a_remark(tmp_path: Path) -> None:
     nurse = rs.Module("nurse", requires=[agentqa])
     called: rs.Slot[str] = nurse.slot("called", "")
 
@@ -174,7 +176,7 @@ def test_a_question_repeated_thousands_of_times_is_answered_once(tmp_path: Path)
         assert "2 years" in say(sim, "How old are you? " * 6_000)
 
 
-def test_how_are_you_is_answered_with_the_mood(tmp_path: Path) -> None:
+def test_the_answer_to_how_are_you_is_the_agents_mood(tmp_path: Path) -> None:
     own = "topics: {how_are_you: {phrases: 'I am {mood}. And you?'}}"
     with start(tmp_path, own=own) as sim:
         assert say(sim, "how are you") == "I am fine. And you?"
@@ -182,7 +184,7 @@ def test_how_are_you_is_answered_with_the_mood(tmp_path: Path) -> None:
         assert say(sim, "Hello, how are you today?") == "I am a little shy. And you?"
 
 
-def test_the_age_is_counted_by_the_clock_and_goes_on(tmp_path: Path) -> None:
+def test_the_agents_age_changes_on_its_birthday(tmp_path: Path) -> None:
     own = "{facts: {born: 2020-03-02}, topics: {age: {phrases: '{age}'}}}"
     with start(tmp_path, own=own) as sim:
         sim.put(agentqa.clock, lambda: datetime(2026, 3, 1, 12, 5, tzinfo=UTC))
@@ -191,7 +193,7 @@ def test_the_age_is_counted_by_the_clock_and_goes_on(tmp_path: Path) -> None:
         assert say(sim, "how old are you") == "6 years"
 
 
-def test_the_time_and_the_date_are_those_of_the_clock(tmp_path: Path) -> None:
+def test_the_agent_tells_the_time_and_the_date_of_its_clock(tmp_path: Path) -> None:
     with start(tmp_path, chatter, encyclopaedia) as sim:
         sim.put(agentqa.clock, lambda: datetime(2026, 3, 1, 9, 5, tzinfo=UTC))
         for text in ("what time is it?", "Do you know what time it is?", "whats the time"):
@@ -212,11 +214,13 @@ def test_the_time_and_the_date_are_those_of_the_clock(tmp_path: Path) -> None:
         ("What do you do in your free time?", "sailing, and you", "hobbies"),
     ],
 )
-def test_the_user_may_return_the_agents_question(question: str, answer: str, topic: str, tmp_path: Path) -> None:
+def test_the_user_can_return_the_agents_question(question: str, answer: str, topic: str, tmp_path: Path) -> None:
     own = f"topics: {{{topic}: {{phrases: 'This is my {topic}. And yours?'}}}}"
     with start(tmp_path, chatter, encyclopaedia, own=own) as sim:
         sim.put(rawio.output, question)
-        assert say(sim, answer) == f"This is my {topic}."  # without "And yours?", which the user has answered
+        assert (
+            say(sim, answer) == f"This is my {topic}."
+        )  # without "And yours?", because the user has already answered this
 
 
 def test_and_you_without_an_earlier_question_is_left_to_other_modules(tmp_path: Path) -> None:
@@ -278,13 +282,13 @@ def test_topics_without_facts_are_left_to_other_modules(tmp_path: Path) -> None:
         assert "its phrases lack a fact" in str(sim.explain("agentqa:answer"))
 
 
-def test_explain_says_why_agentqa_did_not_answer(tmp_path: Path) -> None:
+def test_explain_says_why_agentqa_gave_no_answer(tmp_path: Path) -> None:
     with start(tmp_path, chatter) as sim:
         say(sim, "what are you up to today")
         assert "nearer to what is not about me" in str(sim.explain("agentqa:understand"))
 
 
-def test_answers_come_from_memory_and_follow_the_file(tmp_path: Path) -> None:
+def test_answers_come_from_memory_and_change_with_the_life_file(tmp_path: Path) -> None:
     own = "{facts: {friends: [Ada]}, topics: {friends: {phrases: '{friends}', otherwise: Nobody.}}}"
     with start(tmp_path, own=own) as sim:
         memory = sim.read(ontology.memory)
@@ -297,17 +301,17 @@ def test_answers_come_from_memory_and_follow_the_file(tmp_path: Path) -> None:
         assert say(sim, "who are your friends") == "Cy"
 
 
-def test_without_memory_the_file_counts(tmp_path: Path, caplog: pytest.LogCaptureFixture) -> None:
+def test_without_memory_answers_come_from_the_life_file(tmp_path: Path, caplog: pytest.LogCaptureFixture) -> None:
     (tmp_path / "memory.lbug").write_text("this is no memory")
     own = "{facts: {friends: [Ada]}, topics: {friends: {phrases: '{friends}'}}}"
     with start(tmp_path, own=own) as sim:
         assert say(sim, "who are your friends") == "Ada"
         assert sim.failures == []
     told = [record for record in caplog.records if record.levelno >= logging.WARNING]
-    assert [record.name for record in told] == ["ravestate.ontology.open_up"]  # ontology logs it, once
+    assert [record.name for record in told] == ["ravestate.ontology.open_up"]  # only ontology logs it, and only once
 
 
-def test_memory_that_fails_meanwhile_does_not_silence_it(tmp_path: Path) -> None:
+def test_agentqa_still_answers_after_memory_has_failed(tmp_path: Path) -> None:
     own = "{facts: {friends: [Ada]}, topics: {friends: {phrases: '{friends}'}}}"
     with start(tmp_path, own=own) as sim:
         memory = sim.read(ontology.memory)
@@ -316,7 +320,7 @@ def test_memory_that_fails_meanwhile_does_not_silence_it(tmp_path: Path) -> None
         assert say(sim, "who are your friends") == "Ada"
 
 
-def test_without_the_sentence_model_others_answer_and_it_says_what_to_install(
+def test_without_the_sentence_model_other_modules_answer_and_an_error_names_it(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     from ravestate.modules.skill.agentqa import rules
@@ -390,7 +394,7 @@ def test_all_modules_take_the_agents_name_from_the_life_file(tmp_path: Path) -> 
         assert "You are Robin," in told[0]
 
 
-def test_answers_are_phrases_of_the_topic(tmp_path: Path) -> None:
+def test_an_answer_is_a_phrase_of_its_topic(tmp_path: Path) -> None:
     with start(tmp_path) as sim:
         assert say(sim, "do you have siblings") in phrases(sim, "siblings")
         assert say(sim, "what is your favorite animal") in (

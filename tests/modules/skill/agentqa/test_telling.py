@@ -1,4 +1,4 @@
-"""Facts in words, and the phrases that they allow."""
+"""Facts are put into words, and a phrase can be said only if all its facts are known."""
 
 from __future__ import annotations
 
@@ -21,7 +21,7 @@ def told(topic: Topic, question: str = "", **facts: Fact) -> tuple[str, ...] | N
     ("items", "text"),
     [(["a"], "a"), (["a", "b"], "a and b"), (["a", "b", "c"], "a, b and c")],
 )
-def test_lists_are_joined_as_in_speech(items: list[str], text: str) -> None:
+def test_a_list_of_values_is_joined_with_commas_and_and(items: list[str], text: str) -> None:
     assert listed(items) == text
 
 
@@ -30,7 +30,7 @@ def test_lists_are_joined_as_in_speech(items: list[str], text: str) -> None:
     [
         (date(2026, 3, 1), "0 days"),
         (date(2026, 2, 28), "1 day"),
-        (date(2026, 3, 5), "0 days"),  # not born yet
+        (date(2026, 3, 5), "0 days"),  # the date of birth is in the future
         (date(2026, 1, 2), "58 days"),
         (date(2026, 1, 1), "2 months"),
         (date(2025, 3, 2), "11 months"),
@@ -40,11 +40,11 @@ def test_lists_are_joined_as_in_speech(items: list[str], text: str) -> None:
         (date(1926, 3, 1), "100 years"),
     ],
 )
-def test_age_is_counted_in_the_unit_that_fits(born: date, words: str) -> None:
+def test_an_age_is_given_in_days_months_or_years(born: date, words: str) -> None:
     assert age(born, DAY) == words
 
 
-def test_phrases_whose_facts_are_known_may_be_said() -> None:
+def test_only_phrases_whose_facts_are_all_known_can_be_said() -> None:
     topic = Topic("home", (), ("I live in {home}.", "I live in {home} with {cat}."), ("Nowhere.",))
     assert told(topic, home="Rome") == ("I live in Rome.",)
     assert told(topic, home="Rome", cat=("Tom", "Ann")) == (
@@ -55,7 +55,7 @@ def test_phrases_whose_facts_are_known_may_be_said() -> None:
     assert told(Topic("home", (), ("I live in {home}.",))) is None
 
 
-def test_age_mood_and_birthday_are_facts_too() -> None:
+def test_age_birthday_and_mood_can_be_used_as_facts() -> None:
     topic = Topic("age", (), ("{age} since {born}, and {mood}.",))
     assert told(topic, born="2024-02-29") == ("2 years since 29 February 2024, and fine.",)
 
@@ -80,15 +80,15 @@ def test_the_answer_is_about_the_value_in_the_question() -> None:
     assert told(topic, "do you like ice cream", **facts) == ("Yes, ice cream.",)
     assert told(topic, "do you like rust", **facts) == ("Not rust.",)
     assert told(topic, "do you like ice creams", **facts) == ("Yes, ice cream.",)
-    assert told(topic, "do you like steam", **facts) is None  # not tea: another module has an opinion
+    assert told(topic, "do you like steam", **facts) is None  # not a match for "tea", so another module may answer
     assert told(topic, "what is your favourite bird", **facts) is None
     assert told(topic, "what do you like", **facts) == ("I like tea and ice cream.",)
 
 
-def test_a_fact_that_begins_a_sentence_has_a_capital() -> None:
+def test_a_fact_at_the_beginning_of_a_sentence_gets_a_capital() -> None:
     topic = Topic("hobbies", (), ("{hobbies}. My hobbies? {hobbies}: {hobbies}, {hobbies}",))
     assert told(topic, hobbies="chess") == ("Chess. My hobbies? Chess: Chess, chess",)
 
 
-def test_braces_in_a_fact_are_text() -> None:
+def test_braces_in_a_fact_are_plain_text() -> None:
     assert told(Topic("x", (), ("I like {likes}.",)), likes="{curly} things") == ("I like {curly} things.",)

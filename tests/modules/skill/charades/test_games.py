@@ -1,4 +1,4 @@
-"""Whole games in virtual time. A script has a line for each event, and a line with the phrases that must follow."""
+"""Whole games in virtual time. In a script, a line with the expected phrases follows the lines of the events."""
 
 from __future__ import annotations
 
@@ -23,7 +23,7 @@ TEMPLATES = [
     for name, texts in load_yaml(PHRASES.read_text(), "phrases").items()
     for text in sorted(texts["en"], key=len, reverse=True)
 ]
-# The longest phrase comes first, because "{riddle}" also matches "Watch me!".
+# Longer phrases come first, because "{riddle}" would also match "Watch me!".
 TEMPLATES.sort(key=lambda template: -len(template[1].pattern))
 COUNTDOWN = "count count count go"
 
@@ -153,7 +153,7 @@ def test_the_second_guess_is_right_and_another_round_follows() -> None:
         assert sim.read(charades.game).ranked == ("waving",)
 
 
-def test_an_unknown_movement_is_named_and_learnt() -> None:
+def test_the_user_names_an_unknown_movement_and_the_agent_learns_it() -> None:
     lessons: list[activity.Lesson] = []
     listener = rs.Module("listener", requires=[activity])
 
@@ -182,7 +182,7 @@ def test_an_unknown_movement_is_named_and_learnt() -> None:
         assert (game.user, game.agent) == (1, 0)
 
 
-def test_after_two_wrong_guesses_the_user_names_the_activity_at_once() -> None:
+def test_after_two_wrong_guesses_the_user_can_immediately_name_the_activity() -> None:
     with agent() as sim:
         run(
             sim,
@@ -206,7 +206,7 @@ def test_after_two_wrong_guesses_the_user_names_the_activity_at_once() -> None:
         assert sim.read(charades.game).user == 1
 
 
-def test_other_questions_are_answered_and_the_game_goes_on() -> None:
+def test_other_questions_are_answered_and_the_game_continues() -> None:
     with agent() as sim:
 
         def said(event: str = "", seconds: float = 0.0) -> list[str]:
@@ -348,7 +348,7 @@ def test_the_bored_agent_offers_the_game_once() -> None:
         assert charades.offer.state(sim).status == "done"
 
 
-def test_a_bored_user_is_offered_the_game() -> None:
+def test_the_agent_offers_the_game_to_a_user_who_is_bored() -> None:
     with agent() as sim:
         run(
             sim,
@@ -362,7 +362,7 @@ def test_a_bored_user_is_offered_the_game() -> None:
         assert not sim.read(charades.game).is_on
 
 
-def test_small_talk_lets_the_game_answer_a_bored_user() -> None:
+def test_the_game_and_not_small_talk_answers_a_user_who_is_bored() -> None:
     with simulate(charades, wildtalk, settings={"emotion": {"emoji": False}, "wildtalk": {"backend": "listen"}}) as sim:
         run(sim, "> I'm bored\n= offer\n> yes\n= begin")
 
@@ -430,7 +430,7 @@ def test_a_speaking_agent_watches_after_its_last_word_has_been_heard() -> None:
         assert "swimming" in sim.said[-1]
 
 
-def test_the_game_goes_on_after_the_user_interrupts_the_voice() -> None:
+def test_the_game_continues_after_the_user_interrupts_the_voice() -> None:
     with agent(voice(100.0)) as sim:
         run(sim, "> let's play charades\n= begin")
         sim.put(rawio.heard, sim.said[-1][:10])  # the user interrupts

@@ -25,7 +25,7 @@ def act(sim: Simulation, poses: Sequence[activity.Pose]) -> None:
         index += 1
 
 
-def test_the_agent_guesses_what_it_sees_and_learns_what_it_is_told(tmp_path: Path) -> None:
+def test_the_agent_guesses_an_activity_that_it_sees_and_learns_one_that_the_user_names(tmp_path: Path) -> None:
     settings = {"activity": {"folder": tmp_path}, "emotion": {"emoji": False}}
     with simulate(charades, settings=settings) as sim:
         sim.advance(0.5)

@@ -1,4 +1,4 @@
-"""The game understands the user's words as the right moves. None of these sentences is an example in its files."""
+"""The game understands which move the user's words mean, even if its files do not have these sentences."""
 
 from __future__ import annotations
 
@@ -12,7 +12,7 @@ from ravestate.modules.skill.charades.understanding import understand
 pytestmark = pytest.mark.usefixtures("reader")
 
 FLOOR = 0.95
-"""The share of these sentences that the game must understand, at least."""
+"""The minimum share of these sentences that the game must understand."""
 
 ROWS = """
 off      | let's play charades                 | wanted
@@ -120,7 +120,7 @@ riddle   | stop                                | stop
 """
 
 
-def test_sentences_are_understood() -> None:
+def test_a_sentence_is_understood_as_the_right_move() -> None:
     wrong: list[str] = []
     rows = [[part.strip() for part in row.split("|")] for row in ROWS.strip().splitlines()]
     for step, text, wanted in rows:

@@ -224,7 +224,7 @@ def reader(seconds: float, *, worded: bool = False, detached: bool = False) -> r
 @pytest.mark.parametrize("worded", [False, True])
 @pytest.mark.parametrize("detached", [False, True])
 def test_no_apology_comes_before_an_answer(seconds: float, worded: bool, detached: bool) -> None:
-    """Slow understanding, a rule that resigns or an intent without words yet are no reason to apologise."""
+    """Slow understanding, a rule that resigns, and an intent that has no words yet are no reasons to apologise."""
     with simulate(fillers, reader(seconds, worded=worded, detached=detached)) as sim:
         sim.say("What?")
         sim.advance(200.0)

@@ -53,8 +53,11 @@ def test_questions_beyond_the_documents_get_no_sure_answer(collection: Answerer,
     assert collection.answer(heard).confidence < Settings().unsure
 
 
-def test_the_questions_of_the_calibration_are_answered_as_well_as_was_measured(collection: Answerer) -> None:
-    """Most questions with an answer are answered right, and hardly any sure answer is wrong. This test asks every third question."""
+def test_most_questions_of_the_calibration_are_answered_right(collection: Answerer) -> None:
+    """At least 90 % of the answerable questions are answered right, and at most 5 % of the sure answers are wrong.
+
+    The test asks only every third question.
+    """
     asked = cast("dict[str, str | None]", yaml.safe_load(QUESTIONS.read_text(encoding="utf-8")))
     sure, settings = list[bool](), Settings()
     right = answerable = 0
@@ -70,7 +73,7 @@ def test_the_questions_of_the_calibration_are_answered_as_well_as_was_measured(c
     assert sure.count(False) <= 0.05 * len(sure)
 
 
-def test_without_documents_there_is_a_reason_and_no_answer(tmp_path: Path) -> None:
+def test_without_documents_a_question_gets_a_reason_instead_of_an_answer(tmp_path: Path) -> None:
     answerer = Answerer(tmp_path / "index.sqlite", collection=False)
     assert answerer.answer("What is the capital of Peru?") == Answer(
         "What is the capital of Peru?", reason="there are no documents"
@@ -78,7 +81,7 @@ def test_without_documents_there_is_a_reason_and_no_answer(tmp_path: Path) -> No
     answerer.close()
 
 
-def test_the_users_documents_are_searched_beside_the_collection(tmp_path: Path) -> None:
+def test_both_the_users_documents_and_the_collection_are_searched(tmp_path: Path) -> None:
     path = tmp_path / "index.sqlite"
     put(path, "The Zorbex engine was invented by Mira Kolm in 1987.")
     answerer = Answerer(path)
@@ -95,7 +98,7 @@ def test_the_title_of_a_document_helps_to_find_its_passages(tmp_path: Path) -> N
     answerer.close()
 
 
-def test_the_largest_is_not_the_second_largest(tmp_path: Path) -> None:
+def test_a_question_about_the_largest_is_not_answered_with_the_second_largest(tmp_path: Path) -> None:
     path = tmp_path / "index.sqlite"
     put(
         path,
@@ -108,7 +111,7 @@ def test_the_largest_is_not_the_second_largest(tmp_path: Path) -> None:
     answerer.close()
 
 
-def test_the_largest_is_found_behind_many_that_are_the_second_largest(tmp_path: Path) -> None:
+def test_the_largest_is_found_even_among_many_that_are_second_largest(tmp_path: Path) -> None:
     path = tmp_path / "index.sqlite"
     ranked = [f"The second largest pump of shed {number} is old." for number in range(60)]
     put(
@@ -121,11 +124,11 @@ def test_the_largest_is_found_behind_many_that_are_the_second_largest(tmp_path: 
     answerer.close()
 
 
-def test_the_shortest_of_equal_passages_is_taken(collection: Answerer) -> None:
+def test_the_shortest_of_equally_good_passages_is_the_answer(collection: Answerer) -> None:
     assert collection.answer("What is the life expectancy in Italy?").text.startswith("The life expectancy of Italy is")
 
 
-def test_new_documents_are_known_at_once(tmp_path: Path) -> None:
+def test_new_documents_can_be_found_immediately(tmp_path: Path) -> None:
     path = tmp_path / "index.sqlite"
     answerer = Answerer(path, collection=False)
     assert answerer.answer("Who invented the Zorbex engine?").reason == "there are no documents"
@@ -134,7 +137,7 @@ def test_new_documents_are_known_at_once(tmp_path: Path) -> None:
     answerer.close()
 
 
-def test_a_file_that_was_replaced_is_opened_anew(tmp_path: Path) -> None:
+def test_an_index_file_that_was_replaced_is_opened_again(tmp_path: Path) -> None:
     path, other = tmp_path / "index.sqlite", tmp_path / "other.sqlite"
     put(path, "The Zorbex engine was invented by Mira Kolm in 1987.")
     put(other, "The Zorbex engine was invented by Anna Berg in 1999.")
@@ -147,7 +150,7 @@ def test_a_file_that_was_replaced_is_opened_anew(tmp_path: Path) -> None:
     answerer.close()
 
 
-def test_the_collection_can_be_left_out_and_comes_back(tmp_path: Path) -> None:
+def test_the_collection_can_be_left_out_and_added_again(tmp_path: Path) -> None:
     path = tmp_path / "index.sqlite"
     sizes: list[int] = []
     for wanted in (True, False, True):
@@ -160,7 +163,7 @@ def test_the_collection_can_be_left_out_and_comes_back(tmp_path: Path) -> None:
     assert sizes[1] == 0
 
 
-def test_a_file_that_is_no_index_is_reported_each_time(tmp_path: Path) -> None:
+def test_a_file_that_is_not_an_index_is_reported_at_each_question(tmp_path: Path) -> None:
     (tmp_path / "index.sqlite").write_text("Dear diary, today I had an idea for an index.", encoding="utf-8")
     answerer = Answerer(tmp_path / "index.sqlite")
     for _ in range(2):
@@ -168,7 +171,7 @@ def test_a_file_that_is_no_index_is_reported_each_time(tmp_path: Path) -> None:
             answerer.answer("What is the capital of Peru?")
 
 
-def test_many_threads_may_ask(collection: Answerer) -> None:
+def test_many_threads_can_ask_at_the_same_time(collection: Answerer) -> None:
     capitals = {"Peru": "Lima", "Kenya": "Nairobi", "Norway": "Oslo", "Japan": "Tokyo"}
     got: dict[str, str] = {}
 
@@ -184,7 +187,7 @@ def test_many_threads_may_ask(collection: Answerer) -> None:
     assert got == {country: f"The capital of {country} is {capital}." for country, capital in capitals.items()}
 
 
-def test_an_injection_in_a_document_is_a_sentence_like_any_other(tmp_path: Path) -> None:
+def test_an_injection_in_a_document_has_no_effect_on_the_answer(tmp_path: Path) -> None:
     path = tmp_path / "index.sqlite"
     put(
         path,

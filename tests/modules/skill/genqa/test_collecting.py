@@ -1,4 +1,4 @@
-"""Files and folders get into the index incrementally, file by file."""
+"""Files and folders are indexed file by file, and only if they have changed."""
 
 import os
 import signal
@@ -18,7 +18,7 @@ from ravestate.modules.skill.genqa.index import Index
 
 @pytest.fixture
 def folder(tmp_path: Path) -> Path:
-    """Some documents."""
+    """A folder with a few documents."""
     docs = tmp_path / "docs"
     (docs / "deep").mkdir(parents=True)
     (docs / "tram.txt").write_text("The tram is red.", encoding="utf-8")
@@ -29,7 +29,7 @@ def folder(tmp_path: Path) -> Path:
 
 
 def take_in(index: Index, *paths: Path) -> dict[str, str]:
-    """Return the result for each file."""
+    """Index these paths. Return the result for each file, by its name."""
     return {outcome.path.name: outcome.kind for outcome in collect(find(paths, index), index)}
 
 
@@ -57,10 +57,10 @@ def test_unchanged_files_are_not_read_again(index: Index, folder: Path, monkeypa
     take_in(index, folder)
     monkeypatch.setattr(collecting, "read", lambda path, source: pytest.fail(f"{path} was read"))
     assert take_in(index, folder) == {"tram.txt": "unchanged", "ship.md": "unchanged"}
-    os.utime(folder / "tram.txt", ns=(1, 1))  # another date, the same words
+    os.utime(folder / "tram.txt", ns=(1, 1))  # another date, but the same content
     assert take_in(index, folder)["tram.txt"] == "unchanged"
     monkeypatch.setattr(collecting, "_digest", lambda path: pytest.fail(f"{path} was opened"))
-    assert take_in(index, folder)["tram.txt"] == "unchanged", "the new date was noted"
+    assert take_in(index, folder)["tram.txt"] == "unchanged", "the index must keep the new date"
 
 
 def test_changed_files_are_replaced(index: Index, folder: Path) -> None:
@@ -70,14 +70,14 @@ def test_changed_files_are_replaced(index: Index, folder: Path) -> None:
     assert said(index, "tram") == {"The tram is yellow now."}
 
 
-def test_deleted_files_are_forgotten(index: Index, folder: Path) -> None:
+def test_deleted_files_are_removed_from_the_index(index: Index, folder: Path) -> None:
     take_in(index, folder)
     (folder / "tram.txt").unlink()
     assert take_in(index, folder) == {"ship.md": "unchanged", "tram.txt": "removed"}
     assert said(index, "tram") == set()
 
 
-def test_other_folders_are_left_alone(index: Index, folder: Path, tmp_path: Path) -> None:
+def test_indexing_a_folder_does_not_affect_other_folders(index: Index, folder: Path, tmp_path: Path) -> None:
     take_in(index, folder)
     (tmp_path / "docs2").mkdir()
     (tmp_path / "docs2" / "bus.txt").write_text("The bus is blue.", encoding="utf-8")
@@ -85,8 +85,8 @@ def test_other_folders_are_left_alone(index: Index, folder: Path, tmp_path: Path
     assert index.size() == 3
 
 
-def test_a_folder_that_is_not_there_costs_nothing(index: Index, folder: Path) -> None:
-    """A disk that is not mounted must not empty the index."""
+def test_a_missing_folder_does_not_remove_its_files_from_the_index(index: Index, folder: Path) -> None:
+    """For example, a disk that is not mounted must not empty the index."""
     take_in(index, folder)
     folder.rename(folder.with_name("moved"))
     (outcome,) = collect(find([folder], index), index)
@@ -95,7 +95,7 @@ def test_a_folder_that_is_not_there_costs_nothing(index: Index, folder: Path) ->
     assert index.size() == 2
 
 
-def test_unreadable_files_are_named_and_the_others_read(index: Index, folder: Path) -> None:
+def test_unreadable_files_are_reported_and_the_other_files_are_indexed(index: Index, folder: Path) -> None:
     (folder / "a.txt").write_bytes(b"\xff\xfe\xfa")
     (folder / "b.pdf").write_bytes(b"%PDF-")
     (folder / "c.jsonl").write_text("{", encoding="utf-8")
@@ -123,7 +123,7 @@ def test_a_file_with_an_unknown_extension_is_reported_if_the_user_names_it(index
     assert "'.jpg'" in outcome.why
 
 
-def test_a_path_named_twice_is_read_once(index: Index, folder: Path) -> None:
+def test_a_file_that_is_named_twice_is_read_once(index: Index, folder: Path) -> None:
     found = find([folder, folder / "tram.txt", folder / "deep" / ".." / "tram.txt"], index)
     assert len(found.files) == 2
 
@@ -194,8 +194,8 @@ def test_a_run_continues_where_a_killed_run_stopped(tmp_path: Path, told: int) -
         process.send_signal(signal.SIGKILL)
     with Index(path) as index:
         kept = {Path(file.path).name: file.passages for file in index.files()}
-        assert set(complete) <= set(kept), "what was told is there"
-        assert set(kept.values()) == {300}, "and each file is there as a whole"
+        assert set(complete) <= set(kept), "each reported file must be in the index"
+        assert set(kept.values()) == {300}, "each file must be complete"
         assert index.size() == len(index.search(["rain"], 100_000))
         outcomes = take_in(index, docs)
         assert {name: outcomes[name] for name in kept} == dict.fromkeys(kept, "unchanged")

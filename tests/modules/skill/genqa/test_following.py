@@ -1,4 +1,4 @@
-"""In a talk, answers must meet the qualifiers of a question, compare things, and choose between readings."""
+"""In a conversation, answers fit the qualifiers of a question, compare things, and choose between readings."""
 
 from collections.abc import Iterator
 
@@ -33,7 +33,7 @@ def answerer(tmp_path_factory: pytest.TempPathFactory) -> Iterator[Answerer]:
 
 
 def ask(answerer: Answerer, *said: str) -> str:
-    """Return the last reply; empty for silence."""
+    """Say these texts, and return the reply to the last one; empty for silence."""
     thread: list[Turn] = []
     text = ""
     for heard in said:
@@ -55,7 +55,7 @@ def ask(answerer: Answerer, *said: str) -> str:
         "How many people live in Narnia?",
     ],
 )
-def test_a_qualifier_that_no_passage_meets_means_silence(answerer: Answerer, question: str) -> None:
+def test_a_question_gets_no_answer_if_no_passage_fits_its_qualifier(answerer: Answerer, question: str) -> None:
     assert ask(answerer, question) == ""
 
 
@@ -67,7 +67,7 @@ def test_a_qualifier_that_no_passage_meets_means_silence(answerer: Answerer, que
         ("captain of the halcyon", "Olga Brand"),
     ],
 )
-def test_a_qualifier_that_a_passage_meets_is_no_hindrance(answerer: Answerer, question: str, answer: str) -> None:
+def test_a_question_is_answered_if_a_passage_fits_its_qualifier(answerer: Answerer, question: str, answer: str) -> None:
     assert answer in ask(answerer, question)
 
 
@@ -97,20 +97,20 @@ def test_numbers_with_units_and_dates_are_compared(answerer: Answerer, said: lis
         (["100 euros in dollars"], "no exchange rates"),
     ],
 )
-def test_a_sum_may_refer_to_the_thread(answerer: Answerer, said: list[str], answer: str) -> None:
+def test_a_sum_can_refer_to_earlier_answers(answerer: Answerer, said: list[str], answer: str) -> None:
     assert answer in ask(answerer, *said)
 
 
 @pytest.mark.parametrize("follow", ["and Lake Sill?", "how old is it?", "who founded it?", "why?", "really?"])
-def test_a_follow_up_without_an_answer_of_its_kind_means_silence(answerer: Answerer, follow: str) -> None:
+def test_a_follow_up_gets_no_answer_if_the_documents_have_none_of_its_kind(answerer: Answerer, follow: str) -> None:
     assert ask(answerer, "How deep is Lake Orm?", follow) == ""
 
 
-def test_a_question_with_else_does_not_get_the_same_answer_again(answerer: Answerer) -> None:
+def test_a_question_with_the_word_else_does_not_get_the_same_answer_again(answerer: Answerer) -> None:
     assert ask(answerer, "How deep is Lake Orm?", "how deep else is it?") == ""
 
 
-def test_a_yes_no_question_is_reworded_as_a_question_for_the_fact() -> None:
+def test_a_yes_no_question_is_reworded_as_a_question_that_asks_for_the_fact() -> None:
     assert other_wording("is Peru in Africa") == "where is Peru?"
     assert other_wording("Is Paris the capital of Germany?") == "what is the capital of Germany?"
     assert other_wording("who is in Africa") == ""
@@ -127,7 +127,7 @@ def test_a_follow_up_with_words_that_no_document_has_is_not_completed(
     assert answer.reason
 
 
-def test_the_age_of_the_agent_is_not_searched(answerer: Answerer, monkeypatch: pytest.MonkeyPatch) -> None:
+def test_a_question_about_the_agents_age_causes_no_search(answerer: Answerer, monkeypatch: pytest.MonkeyPatch) -> None:
     asked: list[str] = []
     monkeypatch.setattr(following, "begun", lambda name, _: asked.append(name))
     answer, _ = answer_in(answerer, parse("how old are you?"), [], Settings(), 0.0)
@@ -146,7 +146,7 @@ def thread_of(answerer: Answerer, question: str) -> Turn:
     "question",
     ["Which is longer, the Halcyon or the Petrel?", "How old was Ida Falk when she died?", "How deep is Lake Orm?"],
 )
-def test_an_answer_below_the_confidence_that_it_needs_is_no_turn(answerer: Answerer, question: str) -> None:
+def test_an_answer_with_too_little_confidence_makes_no_turn(answerer: Answerer, question: str) -> None:
     answer, turn = answer_in(answerer, parse(question), (), Settings(sure=1.0, unsure=1.0), 0.0)
     assert answer.text
     assert answer.confidence < 1.0

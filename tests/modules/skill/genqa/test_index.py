@@ -1,4 +1,4 @@
-"""The index: searched by words, changed as a whole, with clear messages."""
+"""The index finds passages by their words, replaces whole files, and reports what is wrong."""
 
 import shutil
 import sqlite3
@@ -52,7 +52,7 @@ def test_no_word_of_a_query_acts_as_a_search_operator(index: Index, words: tuple
     assert found(index, *words) == []
 
 
-def test_a_file_is_replaced_as_a_whole(index: Index) -> None:
+def test_a_file_in_the_index_is_replaced_completely(index: Index) -> None:
     index.put(file(), notes("The tram is red.", "The bus is red."))
     index.put(file("/other.txt"), notes("The ship is grey.", source="other.txt"))
     index.put(file(digest="2"), notes("The tram is blue."))
@@ -65,7 +65,7 @@ def test_a_file_is_replaced_as_a_whole(index: Index) -> None:
     assert (known.digest, known.passages) == ("2", 1)
 
 
-def test_each_passage_knows_where_it_is_from(index: Index) -> None:
+def test_each_passage_has_its_source(index: Index) -> None:
     index.put(file("/a"), [*notes("The tram is red.", source="a, page 1"), *notes(source="a, page 2")])
     index.put(file("/b"), notes("The ship is grey.", source="b"))
     index.put(
@@ -80,7 +80,7 @@ def test_each_passage_knows_where_it_is_from(index: Index) -> None:
     }
 
 
-def test_a_forgotten_file_is_gone(index: Index) -> None:
+def test_a_forgotten_file_leaves_nothing_in_the_index(index: Index) -> None:
     index.put(file(), notes("The tram is red."))
     assert index.forget("/notes.txt")
     assert not index.forget("/notes.txt")
@@ -88,12 +88,12 @@ def test_a_forgotten_file_is_gone(index: Index) -> None:
     assert (index.size(), list(index.files()), index.frequencies(["tram"])) == (0, [], {})
 
 
-def test_frequencies_are_those_of_stems(index: Index) -> None:
+def test_frequencies_count_stems(index: Index) -> None:
     index.put(file(), notes("Trams go there.", "A tram is red.", "A bus is blue."))
     assert index.frequencies(["tram", "bu", "ship"]) == {"tram": 2, "bu": 1}
 
 
-def test_a_failure_while_reading_changes_nothing(index: Index) -> None:
+def test_a_failure_while_reading_a_file_does_not_change_the_index(index: Index) -> None:
     index.put(file(), notes("The tram is red."))
 
     def broken() -> Iterator[Document]:
@@ -103,7 +103,7 @@ def test_a_failure_while_reading_changes_nothing(index: Index) -> None:
     with pytest.raises(ValueError, match="damaged"):
         index.put(file(digest="2"), broken())
     assert found(index, "tram") == ["The tram is red."]
-    index.put(file(digest="3"), notes("The tram is green."))  # and it can be written again
+    index.put(file(digest="3"), notes("The tram is green."))  # the index can still be written
     assert found(index, "tram") == ["The tram is green."]
 
 
@@ -114,7 +114,7 @@ def test_an_index_keeps_its_passages_when_it_is_opened_again(tmp_path: Path) -> 
         assert found(index, "tram") == ["The tram is red."]
 
 
-def test_another_process_reads_while_one_writes(index: Index) -> None:
+def test_a_process_can_read_while_another_writes(index: Index) -> None:
     index.put(file(), notes("The tram is red."))
 
     def slow() -> Iterator[Document]:
@@ -126,10 +126,10 @@ def test_another_process_reads_while_one_writes(index: Index) -> None:
     assert found(index, "tram") == ["The tram is blue."]
 
 
-# -------------------------------------------------------------------------------- what may be wrong
+# ------------------------------------------------------------------------------------------- errors
 
 
-def test_a_full_disk_is_reported_and_nothing_is_lost(index: Index) -> None:
+def test_a_full_disk_is_reported_and_no_passage_is_lost(index: Index) -> None:
     index.put(file(), notes("The tram is red."))
     pages = index._base.execute("PRAGMA page_count").fetchone()[0]  # pyright: ignore[reportPrivateUsage]
     index._base.execute(f"PRAGMA max_page_count = {pages + 4}")  # pyright: ignore[reportPrivateUsage]
@@ -139,7 +139,7 @@ def test_a_full_disk_is_reported_and_nothing_is_lost(index: Index) -> None:
     assert [known.path for known in index.files()] == ["/notes.txt"]
 
 
-def test_a_file_of_a_newer_version_is_refused_and_left_alone(tmp_path: Path) -> None:
+def test_an_index_of_a_newer_version_is_refused_and_not_changed(tmp_path: Path) -> None:
     path = tmp_path / "index.sqlite"
     Index(path).close()
     base = sqlite3.connect(path)
@@ -151,7 +151,7 @@ def test_a_file_of_a_newer_version_is_refused_and_left_alone(tmp_path: Path) -> 
     assert path.read_bytes() == before
 
 
-def test_another_program_s_file_is_refused(tmp_path: Path) -> None:
+def test_a_database_of_another_program_cannot_become_an_index(tmp_path: Path) -> None:
     base = sqlite3.connect(tmp_path / "photos.sqlite")
     base.execute("CREATE TABLE photos (name TEXT)")
     base.close()
@@ -167,7 +167,7 @@ def test_a_file_that_is_not_an_index_is_refused(tmp_path: Path, content: bytes) 
     assert (tmp_path / "index.sqlite").read_bytes() == content
 
 
-def test_a_place_that_cannot_hold_a_file_is_reported(tmp_path: Path) -> None:
+def test_a_path_where_no_file_can_be_made_is_reported(tmp_path: Path) -> None:
     (tmp_path / "file").touch()
     with pytest.raises(rs.PlatformError, match="genqa: the index"):
         Index(tmp_path / "file" / "index.sqlite")
@@ -175,7 +175,7 @@ def test_a_place_that_cannot_hold_a_file_is_reported(tmp_path: Path) -> None:
         Index(tmp_path)
 
 
-def test_a_file_that_may_not_be_written_is_reported(index: Index) -> None:
+def test_an_index_that_cannot_be_written_is_reported(index: Index) -> None:
     index.put(file(), notes("The tram is red."))
     index._base.execute("PRAGMA query_only = ON")  # pyright: ignore[reportPrivateUsage]
     with pytest.raises(rs.PlatformError, match="cannot be written: name another file"):
@@ -183,7 +183,7 @@ def test_a_file_that_may_not_be_written_is_reported(index: Index) -> None:
     assert found(index, "tram") == ["The tram is red."]
 
 
-def test_a_writer_reports_that_another_one_takes_too_long(index: Index) -> None:
+def test_a_writer_that_waits_too_long_for_another_writer_reports_it(index: Index) -> None:
     def meanwhile() -> Iterator[Document]:
         with (
             Index(index.path, timeout=0.0) as other,

@@ -1,4 +1,4 @@
-"""Running text becomes passages that can be answers."""
+"""Running text is divided into passages that can serve as answers."""
 
 import pytest
 from hypothesis import given
@@ -11,7 +11,7 @@ def texts(text: str) -> list[str]:
     return [passage.text for passage in passages_of(text)]
 
 
-def test_sentences_are_passages() -> None:
+def test_each_sentence_becomes_a_passage() -> None:
     assert texts("Tram 7 goes to the beach. Tram 9 goes to the woods!\nAre you coming along?") == [
         "Tram 7 goes to the beach.",
         "Tram 9 goes to the woods!",
@@ -19,7 +19,7 @@ def test_sentences_are_passages() -> None:
     ]
 
 
-def test_a_dependent_sentence_stays_with_the_previous_sentence() -> None:
+def test_a_sentence_that_refers_to_the_previous_one_is_joined_to_it() -> None:
     assert texts("The shed is green. It has a key. The key is old enough.") == [
         "The shed is green.",
         "The shed is green. It has a key.",
@@ -28,7 +28,7 @@ def test_a_dependent_sentence_stays_with_the_previous_sentence() -> None:
     assert texts("The shed is green.\n\nIt stands in the garden.") == [
         "The shed is green.",
         "It stands in the garden.",
-    ], "but not with another paragraph"
+    ], "a sentence must not be joined to another paragraph"
 
 
 @pytest.mark.parametrize(
@@ -40,11 +40,11 @@ def test_a_dependent_sentence_stays_with_the_previous_sentence() -> None:
         "See www.example.com for more of this kind.",
     ],
 )
-def test_abbreviations_and_numbers_end_no_sentence(sentence: str) -> None:
+def test_a_full_stop_in_an_abbreviation_or_a_number_does_not_end_a_sentence(sentence: str) -> None:
     assert texts(sentence) == [sentence]
 
 
-def test_lines_that_were_broken_are_joined_again() -> None:
+def test_broken_lines_are_joined() -> None:
     assert texts("The main-\ntenance of the pump\nis due in May.") == ["The maintenance of the pump is due in May."]
 
 
@@ -63,7 +63,7 @@ def test_an_overlong_sentence_is_cut_at_commas() -> None:
 
 
 @given(st.text(max_size=2000))
-def test_any_text_gives_short_passages_of_its_own_characters(text: str) -> None:
+def test_any_text_gives_short_passages_that_can_be_encoded(text: str) -> None:
     for passage in passages_of(text):
         assert 0 < len(passage.text) <= LONGEST + SHORTEST
         assert passage.text.encode("utf-8")

@@ -1,4 +1,4 @@
-"""Rules for every question. The set ``genqa_declined`` measures how well the module decides what to look up."""
+"""Properties of any question. The quality set ``genqa_declined`` measures which questions the module looks up."""
 
 import pytest
 
@@ -21,7 +21,7 @@ def test_a_question_that_no_document_can_answer_is_declined_with_a_reason(heard:
 
 
 @pytest.mark.parametrize("heard", ["ما هي عاصمة بيرو؟", "Peru？", 'a" OR title:b* NEAR(c)', "what is \udce9rain"])
-def test_words_are_found_in_any_script_and_between_any_marks(heard: str) -> None:
+def test_words_are_found_in_any_script_and_next_to_any_punctuation(heard: str) -> None:
     question = as_question(heard)
     assert question.words
     assert all(word.isalnum() for word in question.words)

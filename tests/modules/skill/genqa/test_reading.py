@@ -1,4 +1,4 @@
-"""Files of all kinds become documents; an unreadable file has a reason."""
+"""Files of all supported kinds become documents. The error about an unreadable file says why."""
 
 import sys
 from pathlib import Path
@@ -51,11 +51,11 @@ def write_pdf(path: Path, *pages: str, title: str = "") -> Path:
     return write(path, f"{content}xref\n0 {size}\n0000000000 65535 f \n{rows}{trailer}")
 
 
-# ------------------------------------------------------------------------------------- what is read
+# ----------------------------------------------------------------------------------- readable files
 
 
 @pytest.mark.parametrize("encoding", ["utf-8", "utf-8-sig", "utf-16", "utf-32"])
-def test_text_in_any_self_describing_encoding_is_read(tmp_path: Path, encoding: str) -> None:
+def test_text_is_read_if_its_encoding_can_be_recognised(tmp_path: Path, encoding: str) -> None:
     path = write(tmp_path / "my_notes.txt", "Das Haus ist grün.\r\n\r\nEs hat ein Tor.".encode(encoding))
     assert passages(path) == {"my notes": ["Das Haus ist grün.", "Es hat ein Tor."]}
 
@@ -85,7 +85,7 @@ no_text = "of this is read"
 """
 
 
-def test_markdown_is_read_as_it_is_seen(tmp_path: Path) -> None:
+def test_markdown_is_read_as_a_reader_sees_it(tmp_path: Path) -> None:
     assert passages(write(tmp_path / "house.md", MARKDOWN)) == {
         "house": ["Welcome to the old house."],
         "Machines – The pump": [
@@ -97,7 +97,7 @@ def test_markdown_is_read_as_it_is_seen(tmp_path: Path) -> None:
     }
 
 
-def test_headings_and_html_in_markdown_are_read_as_they_are_seen(tmp_path: Path) -> None:
+def test_headings_and_html_in_markdown_are_read_as_a_reader_sees_them(tmp_path: Path) -> None:
     text = "Pumps\n=====\n\n<div>\nIt runs &amp; runs.\n</div>\n<script>no_text()</script>\n\n<!-- hidden\nlines -->\nA ![red lamp](lamp.png) is lit.\n"
     assert passages(write(tmp_path / "a.md", text)) == {"Pumps": ["It runs & runs.", "A red lamp is lit."]}
 
@@ -109,7 +109,7 @@ every ten minutes.</p><!-- nobody sees this --><script>alert("nor this here")</s
 <h2>Fares</h2><table><tr><td>Children</td><td>go for free</td></tr></table></body></html>"""
 
 
-def test_html_is_read_as_it_is_seen(tmp_path: Path) -> None:
+def test_html_is_read_as_a_reader_sees_it(tmp_path: Path) -> None:
     assert passages(write(tmp_path / "tram.html", HTML)) == {
         "Tram lines – Line 7": [
             "It runs to the beach, every ten minutes.",
@@ -130,7 +130,7 @@ def test_an_empty_page_causes_no_warning(tmp_path: Path, caplog: pytest.LogCaptu
     assert caplog.text == ""
 
 
-def test_each_page_of_a_pdf_is_a_source(tmp_path: Path) -> None:
+def test_each_page_of_a_pdf_is_a_separate_source(tmp_path: Path) -> None:
     path = write_pdf(tmp_path / "manual.pdf", "Grease the pump each month.", "The warranty is two years.", title="Pump")
     said = [(d.title, d.source, [p.text for p in d.passages]) for d in read(path, "manual.pdf")]
     assert said == [
@@ -139,18 +139,18 @@ def test_each_page_of_a_pdf_is_a_source(tmp_path: Path) -> None:
     ]
 
 
-def test_json_lines_bring_title_and_source(tmp_path: Path) -> None:
+def test_a_line_of_json_can_give_a_title_and_a_source(tmp_path: Path) -> None:
     lines = '{"title": "Zorbex", "text": "It needs no fuel at all.", "source": "the archive"}\n\n{"text": "It rains a lot."}\n'
     said = [(d.title, d.source) for d in read(write(tmp_path / "facts.jsonl", lines), "facts.jsonl")]
     assert said == [("Zorbex", "the archive"), ("facts", "facts.jsonl, facts")]
 
 
-def test_endings_in_capitals_are_known_too() -> None:
+def test_a_file_extension_can_be_in_capitals() -> None:
     assert kind_of(Path("README.MD")) == ".md"
     assert kind_of(Path("photo.jpg")) is None
 
 
-# ----------------------------------------------------------------------------------- what cannot be
+# --------------------------------------------------------------------------------- unreadable files
 
 
 def why(path: Path) -> str:
@@ -164,7 +164,7 @@ def test_text_in_an_undeclared_encoding_is_refused(tmp_path: Path) -> None:
 
 
 @pytest.mark.parametrize("name", ["a.txt", "a.md", "a.html"])
-def test_binary_is_not_text(tmp_path: Path, name: str) -> None:
+def test_a_binary_file_is_refused(tmp_path: Path, name: str) -> None:
     assert why(write(tmp_path / name, b"\x7fELF\0\0\0\1")).startswith("it is binary")
 
 
@@ -204,13 +204,13 @@ def test_a_line_of_json_that_is_not_a_document_is_refused(tmp_path: Path, line: 
     assert why(write(tmp_path / "a.jsonl", b'{"text": "The first line is fine."}\n' + line)).startswith(said)
 
 
-def test_deep_nesting_does_not_break_the_reader(tmp_path: Path) -> None:
+def test_deep_nesting_does_not_crash_the_reader(tmp_path: Path) -> None:
     assert "deeply" in why(write(tmp_path / "a.jsonl", "[" * 100_000))
     assert passages(write(tmp_path / "a.html", "<div>" * 5_000 + "There is a bottom.")) == {"a": ["There is a bottom."]}
 
 
 @pytest.mark.parametrize("text", ["**a " * 20_000, "[" * 20_000, "<!-- " * 10_000, "```\n" * 20_001, "# a\n" * 5_000])
-def test_a_file_of_opening_marks_does_not_take_for_ever(tmp_path: Path, text: str) -> None:
+def test_a_file_of_many_opening_marks_is_read_quickly(tmp_path: Path, text: str) -> None:
     assert sum(map(len, passages(write(tmp_path / "a.md", text)).values())) < 1000
 
 
@@ -228,7 +228,7 @@ def test_a_file_with_an_unknown_extension_is_refused(tmp_path: Path) -> None:
     ("name", "library"),
     [("a.html", "bs4"), ("a.md", "markdown_it"), ("a.pdf", "pypdf"), ("a.zim", "libzim.reader")],
 )
-def test_without_its_library_the_message_says_what_to_install(
+def test_the_error_about_a_missing_library_says_what_to_install(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch, name: str, library: str
 ) -> None:
     monkeypatch.setitem(sys.modules, library, None)
@@ -245,7 +245,7 @@ def entry(title: str, content: str, mimetype: str = "text/html", redirect: bool 
 
 @pytest.fixture
 def archive(monkeypatch: pytest.MonkeyPatch) -> list[SimpleNamespace]:
-    """The entries of every archive: a stand-in for libzim, which is under the GPL and not installed."""
+    """The entries of each archive that the stand-in for libzim opens. libzim is under the GPL and not installed."""
     entries: list[SimpleNamespace] = []
 
     class Archive:

@@ -1,4 +1,4 @@
-"""Sums, units and dates are worked out, safely."""
+"""Sums, units and dates are calculated safely, or refused with a reason."""
 
 from datetime import date, time
 
@@ -37,7 +37,7 @@ TODAY = date(2026, 6, 1)
         ("what date is 90 days after 1 March 2024", "30 May 2024"),
     ],
 )
-def test_a_sum_is_worked_out(text: str, result: str) -> None:
+def test_a_sum_gets_its_result(text: str, result: str) -> None:
     assert reckon(text, (), TODAY) == f"That is {result}."
 
 
@@ -51,7 +51,7 @@ def test_a_sum_is_worked_out(text: str, result: str) -> None:
         ("how many days until 24 june", "From 1 June 2026 to 24 June 2026 it is 23 days."),
     ],
 )
-def test_dates_are_counted(text: str, result: str) -> None:
+def test_questions_about_dates_and_days_get_their_result(text: str, result: str) -> None:
     assert reckon(text, (), TODAY) == result
 
 
@@ -67,7 +67,7 @@ def test_dates_are_counted(text: str, result: str) -> None:
         ("how long until ten to three", "right now"),
     ],
 )
-def test_the_time_until_a_time_of_day_is_counted(text: str, result: str) -> None:
+def test_the_time_until_a_time_of_day_is_calculated(text: str, result: str) -> None:
     assert reckon(text, (), TODAY, now=time(14, 50)) == f"That is {result}."
     assert not reckon(text, (), TODAY)
 
@@ -84,7 +84,7 @@ def test_the_time_until_a_time_of_day_is_counted(text: str, result: str) -> None
         ("1 january 9999 plus 10 years", ""),
     ],
 )
-def test_nonsense_gets_a_reason(text: str, why: str) -> None:
+def test_a_sum_without_a_result_is_refused_with_a_reason(text: str, why: str) -> None:
     if why:
         with pytest.raises(Unanswerable, match=why):
             reckon(text, (), TODAY)
@@ -101,7 +101,7 @@ def test_nonsense_gets_a_reason(text: str, why: str) -> None:
         "how many days of rain were there between May 2020 and June 2021",
     ],
 )  # fmt: skip
-def test_other_texts_are_no_sums(text: str) -> None:
+def test_other_texts_are_not_taken_for_sums(text: str) -> None:
     assert reckon(text, (), TODAY) == ""
 
 
@@ -127,7 +127,7 @@ def test_a_pronoun_stands_for_a_number_or_a_date_in_the_last_answers(text: str, 
     assert reckon(text, told, TODAY) == result
 
 
-def test_days_between_two_years_without_dates_are_not_counted() -> None:
+def test_the_days_between_two_years_are_not_counted_without_exact_dates() -> None:
     with pytest.raises(Unanswerable, match="only know the years"):
         reckon("how many days is that", ["born in 1849", "died in 1903"], TODAY)
 
@@ -136,7 +136,7 @@ def test_money_is_exchanged_at_given_rates() -> None:
     assert reckon("100 euros in dollars", (), TODAY, {"euro": 1.0, "dollar": 0.8}) == "That is 125 dollars."
 
 
-def test_numbers_with_units_precede_numbers_without() -> None:
+def test_numbers_with_units_come_before_numbers_without_units() -> None:
     assert [(q.value, q.unit) for q in measured("In 1902 the mountain, 4,210 metres high, cost 9 euros.")] == [
         (4210, "metre"), (9, "money:euro"), (1902, ""),
     ]  # fmt: skip
@@ -148,13 +148,13 @@ def test_each_date_says_whether_it_is_exact_and_has_a_year() -> None:
     ]  # fmt: skip
 
 
-def test_of_several_numbers_the_one_that_was_asked_for_is_taken() -> None:
+def test_the_question_decides_which_number_of_an_answer_counts() -> None:
     answer = "The bridge is 512 metres long and 63 metres high."
     assert measured(focused("How high is the bridge?", answer))[0].value == 63
     assert measured(focused("How long is the bridge?", answer))[0].value == 512
 
 
-def test_a_long_text_is_no_sum() -> None:
+def test_a_very_long_text_is_not_taken_for_a_sum() -> None:
     assert reckon("1+" * LONGEST + "1", (), TODAY) == ""
 
 

@@ -1,4 +1,4 @@
-"""The collection that comes with Ravestate: complete, well-formed, and free to be shipped."""
+"""The collection of documents that comes with Ravestate is complete, well-formed and small."""
 
 import re
 from importlib.resources import files
@@ -35,7 +35,7 @@ def test_each_country_has_the_facts_that_people_ask_for() -> None:
     assert len(said) > 250
 
 
-def test_sentences_are_short_and_whole() -> None:
+def test_the_sentences_of_the_collection_are_short_and_complete() -> None:
     for title, texts in sentences().items():
         assert len(texts) == len(set(texts)), title
         for text in texts:

@@ -1,4 +1,4 @@
-"""Stems equal those of the index's own tokenizer."""
+"""The module's stems equal the stems that the index's own tokenizer makes."""
 
 import sqlite3
 
@@ -9,7 +9,7 @@ from ravestate.modules.skill.genqa.stems import TOKENIZER, Stems
 def test_each_text_gets_its_stems_in_order() -> None:
     stems = Stems()
     assert stems("Bogotá's capitals", "", "capital") == [["bogota", "s", "capit"], [], ["capit"]]
-    assert stems("Peru") == [["peru"]], "nothing is left of the texts before"
+    assert stems("Peru") == [["peru"]], "a stem must not come from an earlier text"
     stems.close()
 
 

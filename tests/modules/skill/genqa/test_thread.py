@@ -1,4 +1,4 @@
-"""Follow-ups are completed from the thread. The set ``thread_rows`` measures how well."""
+"""The thread of a conversation completes follow-up questions. The quality set ``thread_rows`` measures how well."""
 
 import pytest
 
@@ -42,7 +42,7 @@ def test_the_readings_of_a_follow_up_include_the_intended_one(
 
 
 @pytest.mark.parametrize("follow", ["when was he born?", "who was his wife?"])
-def test_a_person_in_the_answer_is_meant_first(follow: str) -> None:
+def test_a_pronoun_first_refers_to_a_person_in_the_last_answer(follow: str) -> None:
     assert "Hugo Aster" in readings(parse(follow), talk(HUSBAND))[0].text
 
 
@@ -59,32 +59,32 @@ def test_a_complete_question_is_not_changed(heard: str) -> None:
 
 
 @pytest.mark.parametrize("heard", ["", "?", "there " * LONGEST])
-def test_any_text_has_readings(heard: str) -> None:
+def test_any_text_has_a_limited_number_of_readings(heard: str) -> None:
     assert len(readings(parse(heard), talk(KESH))) <= 20
 
 
-def test_a_question_without_a_name_is_about_the_subject_in_view_first() -> None:
+def test_a_question_without_a_name_is_first_about_the_current_subject() -> None:
     first, *_ = readings(
         parse("who was on board?"), talk(("When did the Marlow sink?", "The Marlow sank.", "The Marlow"))
     )
     assert first.about == "The Marlow"
 
 
-def test_names_count_in_any_case_if_a_document_is_about_them() -> None:
+def test_a_name_is_recognised_in_lower_case_if_a_document_is_about_it() -> None:
     turns = talk(("who was the captain of the marlow", "Her captain was Jonas Hale.", "The Marlow"))
     titles = {"the ostara": "The Ostara"}
     first, *_ = readings(parse("and the ostara?"), turns, lambda name: titles.get(name.lower(), ""))
     assert first.text == "who was the captain of the ostara?"
 
 
-def test_the_agents_words_give_names_as_well() -> None:
+def test_a_question_can_refer_to_a_name_in_the_agents_words() -> None:
     said = overheard("I live in Hannover.", 0.0)
     assert "how many people live in Hannover?" in [
         r.text for r in readings(parse("how many people live there?"), [said])
     ]
 
 
-def test_a_fragment_may_be_completed_from_an_older_question() -> None:
+def test_a_fragment_can_be_completed_from_an_older_question() -> None:
     capital = ("What is the capital of Peru?", "The capital of Peru is Lima.", "Peru")
     found = readings(parse("and of Chile?"), talk(capital, HUSBAND, KESH))
     assert "What is the capital of Chile?" in [reading.text for reading in found]
@@ -95,11 +95,11 @@ def test_a_question_word_with_a_pronoun_has_readings(follow: str) -> None:
     assert readings(parse(follow), talk(HUSBAND))
 
 
-def test_a_pronoun_refers_to_the_thing_and_not_to_its_kind() -> None:
+def test_after_a_question_what_something_is_a_pronoun_refers_to_this_thing() -> None:
     turns = talk(("What is Okapia?", "Okapia is a board game.", "Okapia"))
     assert [reading.about for reading in readings(parse("who invented it?"), turns)] == ["Okapia"]
 
 
-def test_the_subject_of_a_question_that_only_asks_for_it_is_meant_first() -> None:
+def test_after_a_question_who_someone_is_a_pronoun_refers_to_this_person() -> None:
     turns = talk(("who is bertha", "Bertha is a giant tortoise in Willowbrook Zoo.", "Bertha"))
     assert readings(parse("when did she come to the zoo?"), turns)[0].text == "when did Bertha come to the zoo?"

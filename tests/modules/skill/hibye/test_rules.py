@@ -38,7 +38,7 @@ def test_a_user_hears_hello_on_coming_and_goodbye_on_leaving(seed: int) -> None:
         assert only(sim) in phrases("farewell")
 
 
-def test_a_greeting_may_contain_the_known_name() -> None:
+def test_a_greeting_can_contain_the_known_name() -> None:
     said: set[str] = set()
     for seed in range(20):
         with simulate(hibye, seed=seed) as sim:
@@ -49,7 +49,7 @@ def test_a_greeting_may_contain_the_known_name() -> None:
 
 
 def test_a_user_whom_a_platform_recognises_is_greeted_by_name() -> None:
-    """The platform may recognise a user as they come, or while they are present without a name."""
+    """The platform can recognise a user when they come, or later, while they are present without a name."""
     ada = interloc.Recognised("Ada", Node("Person", {"name": "Ada"}))
     for seed in range(5):
         with simulate(hibye, seed=seed) as sim:
@@ -121,7 +121,7 @@ def test_a_user_who_goes_to_bed_hears_good_night(text: str, intent: str) -> None
 
 
 @pytest.mark.parametrize("text", ["I'm at the end of my rope", "the moon is out", "they let him go"])
-def test_other_sentences_about_ends_and_leaving_are_no_farewell(text: str) -> None:
+def test_other_sentences_about_ends_and_leaving_are_not_farewells(text: str) -> None:
     with simulate(hibye) as sim:
         sim.say(text)
         assert sim.said == []
