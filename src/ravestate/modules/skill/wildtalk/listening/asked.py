@@ -220,7 +220,7 @@ def about(phrases: Material, tree: Tree, words: Sequence[Word]) -> str:
                 continue
             parts = [part for part in tree.subtree(word) if part is word or _left(tree, part, word)]
             asks = any(part.low in QUESTION_WORDS for part in parts)
-            text = "" if asks else turned(tree, [part for part in parts if part.low not in ("a", "an")])
+            text = "" if asks else turned(tree, parts)
             if text:
                 return text
     return ""

@@ -27,7 +27,7 @@ LEAST = 0.74
 CLOSE, DOUBTFUL, PROBABLE = 0.93, 0.25, 0.47
 """An entry with the similarity `CLOSE` and the probability `DOUBTFUL`, or more, gets at least the probability `PROBABLE`:
 more than half of such entries suit. Their other sentences may be far from the utterance, which lowers the estimate."""
-ANSWER, EXACTLY = -9.9, -8.6
+ANSWER, EXACTLY = -10.3, -8.6
 """The least scores (logits) of an answer: of advice, which is right for many questions, and of what must be exact. An answer to
 another question from the same area of life scores -10 to -11."""
 MOST = 5

@@ -71,7 +71,8 @@ class Told:
     subject: str = "thing"
     """``mine``, ``theirs`` (somebody else), ``thing``, ``yours`` (the agent), or ``piece`` for a statement without a verb."""
     tense: str = "now"
-    """``past`` for an event, ``now`` also for a state of the past, ``plan``, ``might`` for what is only imagined, ``once`` for a habit of the past, or ``not`` if denied."""
+    """``past``, ``now``, ``plan``, ``might`` (imagined), ``once`` (a habit of the past) or ``not`` (denied). A past state, such
+    as *it was red*, counts as ``now``: nothing happened next."""
     start: int = 0
     """The number of its first word in the utterance."""
 

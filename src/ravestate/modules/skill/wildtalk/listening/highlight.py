@@ -79,7 +79,7 @@ def highlight_in(seen: Analysis, words: Sequence[Word], known: str = "", *, aske
     Args:
         seen: The analysis of the utterance.
         words: The words of its statements.
-        known: What was said before; its words count less.
+        known: The user's words before; if they come again, they count less.
         asked: Whether the words are a question, which asserts nothing.
     """
     lexicon, tree = loaded_lexicon(), seen.tree

@@ -26,8 +26,8 @@ ALIKE = 0.5
 WHOLE = 30
 """The maximum number of words of an utterance that is compared with the bank as a whole."""
 LONG, LONGER = 10, 0.75
-"""An utterance of so many words says more than an entry answers, so only this share of the probability is left. Of 170
-judged replies to such utterances, half were bad where the estimate was 50 %."""
+"""An utterance of so many words says more than an entry answers, so only this share of the probability is left. Half of the
+replies that the estimate called probable were bad for such utterances, by 170 judgements."""
 CROSSED = 0.5
 """The share of its probability that an entry loses if its mood, its kind of question or its persons do not suit."""
 DARKLY = 0.5

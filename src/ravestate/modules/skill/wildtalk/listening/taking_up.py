@@ -21,7 +21,7 @@ Groups = list[Sequence[Line]]
 
 @dataclass(frozen=True, slots=True)
 class Taken:
-    """What the listener takes up of an utterance."""
+    """A statement that the listener takes up, and its highlight."""
 
     told: Told
     """The statement with the highlight; without one, the last statement."""

@@ -5,7 +5,7 @@ from __future__ import annotations
 from ravestate.language.matcher import bundled_matcher
 
 LEAST = {"sad": 0.7, "angry": 0.75, "glad": 0.75, "funny": 0.65, "tired": 0.75}
-"""The least confidence in a tone. Of unseen sentences that reach it, 82 to 95 % have the tone."""
+"""The least confidence in a tone. At this confidence, 82 to 95 % of unseen sentences have the tone."""
 DARK = ("sad", "angry", "tired")
 DOUBT = 0.4
 """The confidence in a dark tone at which an utterance is probably no good news."""
