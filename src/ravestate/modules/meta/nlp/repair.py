@@ -7,6 +7,7 @@ from dataclasses import replace
 
 from ravestate.language.contractions import word_set
 
+from .contrast import join_contrasts
 from .question_word import AUXILIARIES, QUESTION_WORDS
 from .tree import SUBJECTS, Tree, Word
 
@@ -39,6 +40,7 @@ def repaired(tree: Tree) -> Tree:
         if word.dep == "advmod" and word.pos == "PROPN" and word.head == word.index - 1:  # as in "you speak Greek"
             words[word.index] = replace(word, dep="dobj")
     words = _split_relatives(Tree(tree.text, words))
+    words = join_contrasts(Tree(tree.text, words))
     return tree if words == list(tree.words) else Tree(tree.text, words)
 
 
