@@ -135,11 +135,13 @@ class Clause:
             alone = is_denied(self.tree, self.tree.head(word))
             if word.low in NEGATIONS and not alone and self.tree.head(word) not in self.chain[1:]:
                 return True  # unlike "decide not to go", which denies only "go"
-            if before is not None and (before.low, word.low) == ("no", "longer"):
+            if before is not None and (before.low, word.low) == ("no", "longer") and not alone:
                 return True
             if word.low == "neither" and word.dep in ("cc", "preconj", "det"):
                 return True
-            if word.low == "no" and word.dep == "det" and after and after.low != "one":
+            # Unlike "it's the best, no doubt" and "I'm Bob, no wait, I'm Bert".
+            aside = (before is not None and before.low == ",") or self.tree.head(word).dep == "advmod"
+            if word.low == "no" and word.dep == "det" and after and after.low != "one" and not aside:
                 return True
         head = self.head_clause  # as in "I don't smoke or drink"
         if self.verb.dep != "conj" or head is None or self.own_subjects:

@@ -19,6 +19,8 @@ from .verbs import NEGATIONS, PLACES, VERBAL
 _NOUNS = ("NOUN", "PROPN", "NUM", "PRON", "X")
 _INNER = (*_NOUNS, "DET", "ADJ", "PART")
 _OBJECTS = ("dobj", "attr", "acomp", "pobj", "oprd")
+LONGEST = 3
+"""The maximum number of words of each side of a contrast without a verb."""
 _SKIPPED = (",", "-", "–", "—", ";", "(")
 _ASIDE = word_set(
     "today tonight tomorrow yesterday now day week month year time weekend night morning evening moment "
@@ -31,7 +33,7 @@ _EXCEPTED = word_set("anything anyone anybody anywhere nothing nobody none every
 
 @dataclass(frozen=True, slots=True)
 class Contrast:
-    """What a contrast asserts and what it denies: *Leipzig* and *Leeds*, in *it's Leipzig, not Leeds*."""
+    """The asserted and the denied phrase of a contrast: *Leipzig* and *Leeds*, in *it's Leipzig, not Leeds*."""
 
     right: Phrase
     wrong: Phrase
@@ -53,7 +55,7 @@ def is_denied(tree: Tree, word: Word) -> bool:
     above = tree.head(word)
     if word.dep == "pobj" and above.dep == "conj":
         word = above
-    return word.dep == "conj" and any(child.low in NEGATIONS for child in tree.children(word, "neg"))
+    return word.dep == "conj" and any(_denies(tree, child) for child in tree.children(word, "neg"))
 
 
 def contrasted_with(tree: Tree, word: Word) -> bool:
@@ -64,6 +66,8 @@ def contrasted_with(tree: Tree, word: Word) -> bool:
 
 def join_contrasts(tree: Tree) -> list[Word]:
     """Return the words of a tree with the denied phrase of each contrast as a conjunct of the asserted phrase."""
+    if (words := _fragment(tree)) is not None:
+        return words
     for word in tree.words:
         pair = _before_not(tree, word) if word.low == "not" else None
         pair = _after_not(tree, word) if word.low in ("but", ",") else pair
@@ -105,7 +109,7 @@ def _after_not(tree: Tree, but: Word) -> tuple[Word, Word, Word, Sequence[Word]]
     for wrong in _tops(tree, last):
         inner = [word for word in tree.subtree(wrong) if word.index <= last.index and word.low not in NEGATIONS]
         before = tree.words[: inner[0].index]
-        negation = next((word for word in reversed(before) if word.low in NEGATIONS or word.pos == "PUNCT"), None)
+        negation = next((word for word in reversed(before) if _denies(tree, word) or word.pos == "PUNCT"), None)
         if negation is None or negation.pos == "PUNCT" or wrong.low in _EXCEPTED:
             continue
         opens = negation == before[-1]
@@ -113,7 +117,7 @@ def _after_not(tree: Tree, but: Word) -> tuple[Word, Word, Word, Sequence[Word]]
         ours = (
             opens or tree.head(negation) == verb or (verb is not None and tree.head(negation) in tree.ancestors(verb))
         )
-        if but.low == "," and not (opens and len(before) == 1 and (not after or after[0].pos == "PUNCT")):
+        if but.low == "," and not (opens and _begins(before[:-1]) and (not after or after[0].pos == "PUNCT")):
             continue
         subject = bool(after) and after[0].pos in VERBAL
         if (subject and not opens) or not ours or (right.pos == "ADP") != (wrong.pos == "ADP"):
@@ -121,6 +125,33 @@ def _after_not(tree: Tree, but: Word) -> tuple[Word, Word, Word, Sequence[Word]]
         if _kind(right) == _kind(wrong) or (right.dep, right.head) == ("conj", wrong.index):
             return right, wrong, negation, inner
     return None
+
+
+def _fragment(tree: Tree) -> list[Word] | None:
+    """Return the words of *Leipzig, not Leeds* or *not Leeds, Leipzig* without a verb. Such texts have no reliable tags."""
+    parts = [word for word in tree.words if not _begins(tree.words[: word.index + 1])]
+    while parts and parts[-1].pos == "PUNCT":
+        parts.pop()
+    negation = next((word for word in parts if word.low == "not"), None)
+    if negation is None or any(word.pos in ("AUX", "PRON", "ADP") or word.tag in ("VBD", "VBP") for word in parts):
+        return None
+    marks = [word for word in parts if word.pos == "PUNCT" or word.low == "but"]
+    if len({word.index - marks[0].index for word in marks} - {1}) != 1 if marks else True:
+        return None
+    first = parts[: parts.index(marks[0])]
+    second = [word for word in parts[len(first) + 1 :] if word not in marks]
+    right, wrong = (second, first[1:]) if first[:1] == [negation] else (first, second[1:])
+    if negation not in (first[:1] + second[:1]) or not 0 < len(right) <= LONGEST or not 0 < len(wrong) <= LONGEST:
+        return None
+    words = list(tree.words)
+    tops = [next((w for w in reversed(side) if w.pos in _NOUNS), side[-1]) for side in (right, wrong)]
+    for word in tree.words:
+        own = tops[1] if word in wrong or word == negation else tops[0]
+        words[word.index] = replace(word, dep="neg" if word == negation else word.dep, head=own.index)
+    for top, dep in zip(tops, ("ROOT", "conj"), strict=True):
+        kind = {} if top.pos in (*_NOUNS, "ADJ") else {"pos": "NOUN", "tag": "NN"}
+        words[top.index] = replace(top, dep=dep, head=tops[0].index, **kind)
+    return words
 
 
 def _joined(tree: Tree, right: Word, wrong: Word, negation: Word, span: Sequence[Word]) -> list[Word]:
@@ -137,6 +168,8 @@ def _joined(tree: Tree, right: Word, wrong: Word, negation: Word, span: Sequence
             words[word.index] = replace(words[word.index], head=wrong.index)
         elif word.index not in places and word != right and word.head in places:
             words[word.index] = replace(words[word.index], head=right.index)
+    if right.dep == "dep" and tree.head(right).pos in VERBAL:
+        words[right.index] = replace(words[right.index], dep="attr")
     verbal = wrong.pos in (*VERBAL, "ADJ") and right.pos in ("NOUN", "PROPN")
     kind = {"pos": right.pos, "tag": right.tag, "lemma": wrong.text} if verbal else {}
     words[wrong.index] = replace(wrong, dep="conj", head=right.index, **kind)
@@ -192,7 +225,8 @@ def _tops(tree: Tree, last: Word) -> list[Word]:
 
 def _back(tree: Tree, place: int) -> Word | None:
     """Return the last word of the phrase before a negation or *but*, which a comma or an adverb may follow."""
-    while place >= 0 and (tree.words[place].low in _SKIPPED or tree.words[place].pos in ("ADV", "CCONJ")):
+    skipped = ("ADV", "CCONJ") if any(word.pos in VERBAL for word in tree.words) else ("ADV", "CCONJ", "PUNCT")
+    while place >= 0 and (tree.words[place].low in _SKIPPED or tree.words[place].pos in skipped):
         place -= 1
     return tree.words[place] if place >= 0 else None
 
@@ -209,6 +243,17 @@ def _is_negated(tree: Tree, negation: Word) -> bool:
 
 def _noun(tree: Tree, top: Word) -> Word:
     return next(iter(tree.children(top, "pobj")), top) if top.pos == "ADP" else top
+
+
+def _denies(tree: Tree, word: Word) -> bool:
+    """Return whether a word is a negation, or the end of *no longer*."""
+    before = tree.before(word)
+    return word.low in NEGATIONS or (word.low == "longer" and before is not None and before.low == "no")
+
+
+def _begins(before: Sequence[Word]) -> bool:
+    """Return whether only interjections stand before a word: *no, not Leeds*."""
+    return all(word.pos in ("INTJ", "PUNCT") or word.low in ("no", "nope", "nah", "sorry", "oh") for word in before)
 
 
 def _is_vague(word: Word) -> bool:

@@ -15,6 +15,7 @@ from .answers import spelled_out
 from .kinds import is_remark, likeness
 from .topics import NAME, TOPICS
 from .values import value_of
+from .wording import among, same
 
 if TYPE_CHECKING:
     from ravestate.modules import nlp
@@ -48,7 +49,8 @@ def introduced_in(reader: Reader) -> str:
             continue
         found = next(filter(None, (frame.fullmatch(piece) for frame in _FRAMES)), None)
         pointed = found and _POINTING.match(found["frame"])
-        another = pointed and (_means_another(reader) or said)  # "my dog isn't Rex, it's Max"
+        # As in "my dog isn't Rex, it's Max".
+        another = found is not None and pointed and (said or _means_another(reader, found["name"]))
         if found and not another and (name := given_name(found["name"], reader.seen)):
             return name
         if _ME.fullmatch(before) and (name := given_name(piece, reader.seen)):
@@ -88,7 +90,9 @@ def _is_foreign(word: str) -> bool:
     return word[:1].isupper() or lexicon.correction(low) == low
 
 
-def _means_another(reader: Reader) -> bool:
-    """Return whether *it is Ilka* answers a question about another, or corrects their name."""
+def _means_another(reader: Reader, name: str) -> bool:
+    """Return whether *it is Ilka* answers a question about another, corrects another value, or names a place."""
     topic = reader.asked or reader.recent
+    if topic != NAME and any(same(one.right.text, name) for one in reader.seen.contrasts):
+        return not any(among(one.wrong.text, reader.known.get(NAME, ())) for one in reader.seen.contrasts)
     return topic not in ("", NAME) and (bool(reader.asked) or TOPICS[topic].kind in ("people", "place", "organisation"))

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import re
 from collections.abc import Iterable, Sequence
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from datetime import datetime
 
 from ravestate.errors import PlatformError
@@ -131,6 +131,13 @@ def told_in(reader: Reader, before: Sequence[Told] = ()) -> tuple[list[Told], li
     return free, heard
 
 
+def retold_with(one: Told, right: str) -> Told:
+    """Return a statement with another object: *your sister Rosa lives in Ghent*, if the user had said Antwerp."""
+    right = right[:1].upper() + right[1:] if one.object[:1].isupper() else right
+    text = re.sub(rf"(?<!\w){re.escape(one.object)}(?!\w)", lambda _: right, one.text, count=1)
+    return replace(one, object=right, text=text)
+
+
 def recalled(reader: Reader, told: Iterable[Told], known: Facts) -> list[Told]:
     """Return the statements that answer the user's question: *what does Jonas play*, *who is getting married?*."""
     told, kind = list({one.text: one for one in told if one.text}.values()), reader.seen.question
@@ -247,7 +254,7 @@ def _happened(reader: Reader, said: nlp.Statement) -> bool:
 def _about(reader: Reader, said: nlp.Statement) -> str:
     """Return the subject of a statement about the user or somebody they know; empty for other statements."""
     subject, object = said.subject, said.object
-    if subject.person == "I":
+    if subject.person == "I" and subject.text.lower() not in ("mine", "ours"):
         mine = {"my", "our"} & set(object.text.lower().split()) and not _happened(reader, said)
         mine = mine or said.verb in ("name", "call")
         verb = reader.verb(said)
