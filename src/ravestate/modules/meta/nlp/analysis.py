@@ -21,7 +21,7 @@ from .answer import YesNo, yesno_of
 from .clause import Clause
 from .contrast import Contrast, contrasts_of
 from .inquiry import question_of
-from .introduction import Introduction, introduction_in
+from .introduction import Introduction, introductions_in
 from .pipeline import Pipeline
 from .question_word import QuestionWord
 from .reading import Reading
@@ -105,7 +105,8 @@ class Analysis:
     @property
     def introduction(self) -> Introduction | None:
         """The user's name with the other words, if the user says their name beside something else."""
-        return introduction_in(self.sentences, [one.text for one in self.entities if one.label == "PERSON"])
+        persons = [one.text for one in self.entities if one.label == "PERSON"]
+        return next(filter(None, (one.named(persons) for one in introductions_in(self.tree))), None)
 
     @property
     def acted(self) -> tuple[str, ...]:

@@ -1,17 +1,16 @@
 """The user's name in an introduction: *it's me, Ilka*, *Ilka here*, *I'm Ilka*.
 
-The words around the name decide, not the name itself, because the parser and the examples know few of the world's
-names. A word that English does not have is a name; of a word that English has, the entity or the examples decide.
+`nlp` finds the words in the place of a name. A word that English does not have is a name; of a word that English has, the
+entity or the examples decide. The parser and the examples know few of the world's names.
 """
 
 from __future__ import annotations
 
-import re
 from typing import TYPE_CHECKING
 
 from ravestate.language.lexicon import loaded_lexicon
+from ravestate.modules.meta.nlp.introduction import introductions_in
 
-from .answers import spelled_out
 from .kinds import is_remark, likeness
 from .topics import NAME, TOPICS
 from .values import value_of
@@ -22,41 +21,13 @@ if TYPE_CHECKING:
 
     from .reading import Reader
 
-_CLAUSE = re.compile(r"[.!?;:,…–—()\n]+|\s(?:and|but|so)\s(?=(?:i|my|we|our|it|this)\b)", re.IGNORECASE)
-_OPENERS = r"(?:(?:and|but|so|oh|ah|well|now|yes|yeah|no|nope|ok|okay|hi|hiya|hello|hey|hallo|again|actually|sorry|anyway|good \w+|by the way) )*"
-_CLOSERS = r"(?: (?:again|here|speaking|by the way|actually|now|then|today|too|at your service|as it happens))*"
-_NAME = r"(?P<name>[^\W\d][\w'’-]*(?: [^\W\d][\w'’-]*){0,2}?)"
-_BESIDE = r"(?: from \w.*)?"
-_FRAMES = [
-    re.compile(frame, re.IGNORECASE)
-    for frame in (
-        rf"{_OPENERS}(?P<frame>(?:it is|its|this is)(?: me)?|i am) {_NAME}{_CLOSERS}{_BESIDE}",
-        rf"{_OPENERS}{_NAME} (?:again )?(?P<frame>here)(?: again)?{_BESIDE}",
-    )
-]
-_ME = re.compile(rf"{_OPENERS}(?:it is|its|this is)(?: only| just)? me{_CLOSERS}", re.IGNORECASE)
-_POINTING = re.compile(r"it|this", re.IGNORECASE)
-
 
 def introduced_in(reader: Reader) -> str:
     """Return the name in an introduction; empty if the user does not introduce themselves."""
-    text = spelled_out(reader.tree.text)
-    pieces = [(piece.strip(), after) for piece, after in _pieces(text)]
-    before, said = "", False
-    verbs = {word.low for word in reader.tree.words if word.pos in ("VERB", "AUX")}
-    for piece, mark in pieces:
-        if "?" in mark and not before:
-            continue
-        found = next(filter(None, (frame.fullmatch(piece) for frame in _FRAMES)), None)
-        pointed = found and _POINTING.match(found["frame"])
-        # As in "my dog isn't Rex, it's Max".
-        another = found is not None and pointed and (said or _means_another(reader, found["name"]))
-        if found and not another and (name := given_name(found["name"], reader.seen)):
+    for one in introductions_in(reader.tree):
+        another = one.pointing and (one.late or _means_another(reader, one.name))
+        if not another and not one.sure and (name := given_name(one.name, reader.seen)):
             return name
-        if _ME.fullmatch(before) and (name := given_name(piece, reader.seen)):
-            return name
-        before = piece
-        said = said or bool(verbs & set(re.findall(r"\w+", piece.lower())))
     return ""
 
 
@@ -71,15 +42,6 @@ def given_name(words: str, seen: nlp.Analysis) -> str:
     if "NUM" in tags or not (sure or (persons and likeness(words, NAME) > 0)):
         return ""
     return value_of(words, TOPICS[NAME], seen, sure=sure) or ""
-
-
-def _pieces(text: str) -> list[tuple[str, str]]:
-    """Return the clauses of a text, each with the mark after it."""
-    ends = [*_CLAUSE.finditer(text)]
-    starts = [0, *(end.end() for end in ends)]
-    marks = [*(end[0] for end in ends), ""]
-    stops = [*(end.start() for end in ends), len(text)]
-    return [(text[start:stop], mark) for start, stop, mark in zip(starts, stops, marks, strict=True)]
 
 
 def _is_foreign(word: str) -> bool:
