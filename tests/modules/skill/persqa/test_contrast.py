@@ -112,6 +112,19 @@ def test_without_a_wrong_value_the_only_fact_of_that_kind_is_corrected() -> None
     assert after("no, York", ADA, asking) == {}
 
 
+@pytest.mark.parametrize(
+    "text",
+    ["nah i'm good", "no comment", "no im joking", "no, never", "I said goodbye", "Oh, sorry. Henrike.", "no, page 31"],
+)
+def test_words_of_another_kind_do_not_replace_the_fact_mentioned_last(text: str) -> None:
+    assert after(text, ADA, Talk().mentioning("hobby", ("sewing",))) == {}
+
+
+@pytest.mark.parametrize("text", ["oh boy", "wrong guy", "no brothers", "sorry, her name is Dina"])
+def test_words_that_suit_no_single_fact_change_nothing(text: str) -> None:
+    assert after(text, {**ADA, "mother": ("Anna",)}) == {}
+
+
 def test_a_relative_of_another_is_not_the_users() -> None:
     assert after("Nora is my brother's wife, not my sister") == {"sister": ()}
     assert after("nora is my brothers wife not my sister") == {"sister": ()}

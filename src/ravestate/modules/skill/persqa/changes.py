@@ -187,7 +187,9 @@ def may_correct(seen: nlp.Analysis, topic: str) -> bool:
     finite = {
         word.lemma for word in seen.tree.words if word.tag in ("VBD", "VBZ", "VBP", "MD") and word.text not in opposed
     }
-    pronouns = ("", "i", "it", "that", "this", "he", "she", "they")
+    people = TOPICS[topic].kind in ("people", "name")
+    pronouns = ("", "i", "it", "that", "this", *(("he", "she", "they") if people else ()))
+    nouns = (*TOPICS[topic].nouns, *(["name"] if people else []))
     if finite - WORDS["speaking"]:
         return False
     for said in seen.statements if finite else ():
@@ -195,7 +197,7 @@ def may_correct(seen: nlp.Analysis, topic: str) -> bool:
             continue
         owner = said.subject.owner
         own = owner is None or owner.person == "I" or owner.text.lower() in ("his", "her", "its", "their")
-        noun = own and said.subject.head in (*TOPICS[topic].nouns, "name")
+        noun = own and said.subject.head in nouns
         named = said.subject.text.lower() in pronouns or noun
         more = {one.preposition for one in said.phrases} - {"", "with", "in", "from", "at", "for", "as"}
         if not named or more or said.question:
@@ -209,7 +211,7 @@ def misheard(text: str, topic: str, latest: Collection[str], seen: nlp.Analysis)
         return []
     objects = [said.object.text for said in seen.statements if said.object.text]
     for word in seen.tree.words:
-        near = any(0 < _distance(word.low, value.lower()) <= 1 - ALIKE for value in latest)
+        near = any(is_similar(word.low, value) for value in latest)
         number = TOPICS[topic].kind == "number" and word.pos == "NUM" and number_in(word.low)
         named = near and word.pos in ("PROPN", "NOUN", "X")
         after = next((one.pos for one in seen.tree.words[word.index + 1 :] if one.pos != "DET"), "PUNCT")
@@ -224,5 +226,7 @@ def misheard(text: str, topic: str, latest: Collection[str], seen: nlp.Analysis)
     return []
 
 
-def _distance(one: str, other: str) -> float:
-    return 1 - SequenceMatcher(None, one, other).ratio()
+def is_similar(one: str, other: str) -> bool:
+    """Return whether two different values are spelled almost alike: *Lora*, *Nora*."""
+    one, other = one.lower(), other.lower()
+    return one != other and SequenceMatcher(None, one, other).ratio() >= ALIKE

@@ -2,7 +2,7 @@
 
 The parse gives the wrong value and the right value. The wrong value tells which fact the user corrects: a known fact about
 them or their relatives, no matter when it was mentioned. Without a wrong value, users correct the fact that was mentioned
-last. If none was, they correct the only known fact that can have the right value.
+last. If none was, they correct the only known fact of that kind.
 """
 
 from __future__ import annotations
@@ -13,18 +13,21 @@ from dataclasses import dataclass, replace
 from ravestate.modules import nlp
 
 from .answers import answer, without_opening
-from .changes import is_partial, may_correct, misheard
-from .kinds import FITTING, likeness
+from .changes import is_partial, is_similar, may_correct, misheard
+from .kinds import FITTING, kind_of, likeness
 from .links import NOW
 from .reading import Reader
 from .talk import Talk
 from .told import Told, retold_with
-from .topics import NAME, TOPICS, WORDS, Fact
-from .values import value_of
+from .topics import TOPICS, WORDS, Fact
+from .values import number_in, value_of
 from .wording import Facts, among, mentioned, same
 
 _SUBJECTS = frozenset(["it", "that", "this", "he", "she", "they", "i"])
 _CONTENT = frozenset(["NOUN", "PROPN", "NUM", "ADJ", "VERB", "X"])
+_PLAIN: dict[str, float] = {"place": 0.0, "number": 0.0, "organisation": 0.5, "work": 0.5}
+"""Kinds of values that alone tell which fact is meant, each with the least likeness to other values of its kind."""
+_MEANING = frozenset(["meant", "mean", "said"])
 _POINTING = frozenset(["that", "this", "these", "those"])
 
 
@@ -68,7 +71,7 @@ def corrected_in(
             return Correction(free=tuple(new for _, new in free), gone=tuple(old for old, _ in free))
     rest = without_opening(text)
     if not seen.contrasts and rest and not asked and seen.question is None:
-        topic = _opposed(reader.known, rest, recent, seen, answers=talk.spoken.rstrip().endswith("?"))
+        topic = _opposed(reader.known, rest, recent, latest, seen, answers=talk.spoken.rstrip().endswith("?"))
         for fact in answer(rest, topic, seen) if topic else ():
             return Correction(_instead(topic, fact.values[0], latest if topic == recent else ()))
     if recent and may_correct(seen, recent) and (facts := misheard(text, recent, latest, seen)):
@@ -124,35 +127,46 @@ def _may_retell(seen: nlp.Analysis, one: Told, wrong: str) -> bool:
     )
 
 
-def _opposed(known: Facts, rest: str, recent: str, seen: nlp.Analysis, *, answers: bool) -> str:
+def _opposed(known: Facts, rest: str, recent: str, latest: Sequence[str], seen: nlp.Analysis, *, answers: bool) -> str:
     """Return the topic that words such as *no, Leipzig* correct; empty if it is not clear.
 
-    It is the fact mentioned last, or else the only fact that can have such a value. If the agent has asked something
-    else, the words answer its question (`answers`).
+    It is the fact mentioned last, or else the only fact of that kind. If the agent has asked something else, the words
+    answer its question (`answers`).
     """
-    if not may_correct(seen, recent or NAME):
-        return ""
-    if recent and TOPICS[recent].kind not in ("activity", "thing"):
+    values = {
+        topic: [one for fact in answer(rest, topic, seen) for one in fact.values] for topic in {*known, recent} - {""}
+    }
+    if recent and may_correct(seen, recent) and any(_is_like(one, recent, latest) for one in values[recent]):
         return recent
+    if answers or not (
+        seen.yesno.no or "contradiction" in seen.acts or _MEANING & {word.low for word in seen.tree.words}
+    ):
+        return ""
     fitting = [
         topic
-        for topic, values in known.items()
-        if values and topic != NAME and not TOPICS[topic].many and not answers
-        if any(_is_all(value, rest, topic, seen) for fact in answer(rest, topic, seen) for value in fact.values)
+        for topic, had in known.items()
+        if had and TOPICS[topic].kind in _PLAIN and may_correct(seen, topic)
+        if any(
+            _is_all(one, rest, seen) and _is_like(one, topic, least=_PLAIN[TOPICS[topic].kind]) for one in values[topic]
+        )
     ]
-    return fitting[0] if len(fitting) == 1 else recent
+    return fitting[0] if len(fitting) == 1 else ""
 
 
-def _is_all(value: str, rest: str, topic: str, seen: nlp.Analysis) -> bool:
-    """Return whether the words `rest` are nothing but a value, and this value is clearly one of the topic."""
-    about, words = TOPICS[topic], {*value.lower().split(), *WORDS["speaking"]}
-    low = rest.lower()
-    if any(word.pos in _CONTENT and word.low in low and not {word.low, word.lemma} & words for word in seen.tree.words):
-        return False
-    kind = topic if topic in FITTING else about.kind
-    clear = (
-        kind in FITTING
-        and value_of(value, about, seen, sure=False) is not None
-        and likeness(value, kind) > max(0, likeness(value, NAME) * (about.kind != "people"))
-    )
-    return clear or about.kind == "number"
+def _is_all(value: str, rest: str, seen: nlp.Analysis) -> bool:
+    """Return whether the words `rest` are nothing but a value, perhaps with a verb such as *is* or *mean*."""
+    words, low = {*value.lower().split(), *WORDS["speaking"]}, rest.lower()
+    content = (word for word in seen.tree.words if word.pos in _CONTENT and word.low in low)
+    return all({word.low, word.lemma} & words for word in content)
+
+
+def _is_like(value: str, topic: str, latest: Sequence[str] = (), least: float = 0.0) -> bool:
+    """Return whether a value suits the kind of a topic, or is spelled almost like one of the `latest` values."""
+    kind = topic if topic in FITTING else TOPICS[topic].kind
+    if kind == "number" or number_in(value):
+        return kind == "number"
+    free = kind in ("name", "people") or kind not in FITTING
+    free = free or (
+        kind == "activity" and value.islower() and kind_of(value) == "person"
+    )  # a rare word, such as "ludo"
+    return free or likeness(value, kind) > least or any(is_similar(value, one) for one in latest)
