@@ -210,8 +210,18 @@ class _Hearing:
 
     def denies_name(self) -> bool:
         """Return whether the user says that they are not the person as whom the agent knows them."""
-        names = "|".join(map(re.escape, self.known.get(NAME, ())))
-        return bool(names) and re.search(_DENIED.format(names), self.text, re.IGNORECASE) is not None
+        names = self.known.get(NAME, ())
+        unsaid = any(said.negated and said.verb == "say" for said in self.seen.statements)  # "I never said I was Ada"
+        denials = [
+            one for one in self.seen.statements if one.verb in _NAMES and (one.negated or (unsaid and one.hearsay))
+        ]
+        denials = [one for one in denials if one.triple.predicate != "not call" or one.subject.person != "I"]
+        pairs = [
+            (one, other)
+            for said in denials
+            for one, other in ((said.subject, said.object), (said.object, said.subject))
+        ]
+        return any(among(name.text, names) and other.text.lower() in _NAMED for name, other in pairs)
 
     def of_speakers(self) -> bool:
         """Return whether the utterance is about the user and the agent, not about others."""
@@ -381,8 +391,6 @@ _NAMING = frozenset(["i", "me", "name", "call", "called"])
 """Words of which at least one stands beside a user's name, unless it is all that they say: *it's Ada*."""
 _CALM = frozenset(["astonishing", "boredom", "compliment", "insult"])
 """Feelings that do not stop the agent from asking its next question."""
-_DENIED = (
-    r"\b(?:i (?:am|was)|my name is|(?:this|that|it) is) (?:\w+ly )?(?:not|never) (?:called |named |the )?(?:{0})\b(?!['’]s)"
-    r"|\b(?:{0}) is not (?:me|my name)\b|\b(?:not|never) (?:call me|said i (?:am|was)) (?:{0})\b"
-)
-"""A pattern of words that deny the name ``{0}``: *I am not Ada*, *Ada is not my name*."""
+_NAMES = frozenset(["be", "call", "name"])
+_NAMED = frozenset(["i", "me", "my name", "it", "this", "that", "you", "they"])
+"""The other side of a denied name: *I am not Ada*, *Ada is not my name*, *don't call me Ada*."""
