@@ -128,26 +128,22 @@ def _after_not(tree: Tree, but: Word) -> tuple[Word, Word, Word, Sequence[Word]]
 
 
 def _fragment(tree: Tree) -> list[Word] | None:
-    """Return the words of *Leipzig, not Leeds* or *not Leeds, Leipzig* without a verb. Such texts have no reliable tags."""
+    """Return the words of *Leipzig, not Leeds* or *not Leeds, Leipzig*, a text without a verb, which has no reliable tags."""
     parts = [word for word in tree.words if not _begins(tree.words[: word.index + 1])]
     while parts and parts[-1].pos == "PUNCT":
         parts.pop()
-    negation = next((word for word in parts if word.low == "not"), None)
-    if negation is None or any(word.pos in ("AUX", "PRON", "ADP") or word.tag in ("VBD", "VBP") for word in parts):
-        return None
     marks = [word for word in parts if word.pos == "PUNCT" or word.low == "but"]
-    if len({word.index - marks[0].index for word in marks} - {1}) != 1 if marks else True:
+    clausal = any(word.pos in ("AUX", "PRON", "ADP") or word.tag in ("VBD", "VBP") for word in parts)
+    if clausal or not marks or marks[-1].index - marks[0].index >= len(marks):
+        return None  # several commas
+    first = [word for word in parts if word.index < marks[0].index]
+    second = [word for word in parts if word.index > marks[-1].index]
+    right, (negation, *wrong) = (second, first) if first and first[0].low == "not" else (first, second)
+    if negation.low != "not" or not 0 < len(right) <= LONGEST or not 0 < len(wrong) <= LONGEST:
         return None
-    first = parts[: parts.index(marks[0])]
-    second = [word for word in parts[len(first) + 1 :] if word not in marks]
-    right, wrong = (second, first[1:]) if first[:1] == [negation] else (first, second[1:])
-    if negation not in (first[:1] + second[:1]) or not 0 < len(right) <= LONGEST or not 0 < len(wrong) <= LONGEST:
-        return None
-    words = list(tree.words)
-    tops = [next((w for w in reversed(side) if w.pos in _NOUNS), side[-1]) for side in (right, wrong)]
-    for word in tree.words:
-        own = tops[1] if word in wrong or word == negation else tops[0]
-        words[word.index] = replace(word, dep="neg" if word == negation else word.dep, head=own.index)
+    tops = [next((word for word in reversed(side) if word.pos in _NOUNS), side[-1]) for side in (right, wrong)]
+    words = [replace(word, head=tops[word in (*wrong, negation)].index) for word in tree.words]
+    words[negation.index] = replace(words[negation.index], dep="neg")
     for top, dep in zip(tops, ("ROOT", "conj"), strict=True):
         kind = {} if top.pos in (*_NOUNS, "ADJ") else {"pos": "NOUN", "tag": "NN"}
         words[top.index] = replace(top, dep=dep, head=tops[0].index, **kind)
