@@ -1,10 +1,14 @@
 """The repair of parse trees makes clauses and questions readable."""
 
+from itertools import islice
+
 import pytest
+from hypothesis import example, given, settings
+from hypothesis import strategies as st
 
 from ravestate.modules.meta.nlp.contrast import contrasts_of
 from ravestate.modules.meta.nlp.inquiry import question_of
-from ravestate.modules.meta.nlp.pipeline import Pipeline
+from ravestate.modules.meta.nlp.pipeline import Pipeline, pipeline
 from ravestate.modules.meta.nlp.repair import repaired, tag_at
 from ravestate.modules.meta.nlp.statements import statements_of, triples_of
 
@@ -131,6 +135,45 @@ def test_contrasts_are_found_in_texts_without_a_verb_as_well(
 ) -> None:
     (found,) = contrasts_of(repaired(reader.read(text)[0]))
     assert (found.right.text, found.wrong.text) == pair
+
+
+@given(
+    st.lists(
+        st.sampled_from(
+            [
+                "not",
+                "but",
+                ",",
+                ".",
+                "no",
+                "and",
+                "I",
+                "my",
+                "sister",
+                "Tom",
+                "Leeds",
+                "live",
+                "in",
+                "is",
+                "isn't",
+                "a",
+                "dog",
+                "tall",
+                "that",
+                "of",
+            ]
+        )
+    )
+)
+@example(["dog", ","]).via("a comma with nothing after it")
+@example(["that", "'s", "misty", "outside", ",", "not", "sunny"]).via("once a tree with a circle")
+@settings(max_examples=200, deadline=None)
+def test_the_words_of_any_repaired_tree_have_a_root_above_them(words: list[str]) -> None:
+    tree = repaired(pipeline("").read(" ".join(words))[0])
+    for word in tree.words:
+        above = [word, *islice(tree.ancestors(word), len(tree.words))]
+        assert above[-1].head == above[-1].index
+    contrasts_of(tree)
 
 
 @pytest.mark.parametrize("text", ["my name not tom", "why not pizza", "not now", "I live in Rome, not all the time"])

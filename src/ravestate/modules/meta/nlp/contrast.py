@@ -138,9 +138,10 @@ def _fragment(tree: Tree) -> list[Word] | None:
         return None  # several commas
     first = [word for word in parts if word.index < marks[0].index]
     second = [word for word in parts if word.index > marks[-1].index]
-    right, (negation, *wrong) = (second, first) if first and first[0].low == "not" else (first, second)
-    if negation.low != "not" or not 0 < len(right) <= LONGEST or not 0 < len(wrong) <= LONGEST:
+    right, denied = (second, first) if first and first[0].low == "not" else (first, second)
+    if not denied or denied[0].low != "not" or not 0 < len(right) <= LONGEST or not 1 < len(denied) <= LONGEST + 1:
         return None
+    negation, *wrong = denied
     tops = [next((word for word in reversed(side) if word.pos in _NOUNS), side[-1]) for side in (right, wrong)]
     words = [replace(word, head=tops[word in (*wrong, negation)].index) for word in tree.words]
     words[negation.index] = replace(words[negation.index], dep="neg")
