@@ -133,14 +133,15 @@ def test_talk_leaves_out_other_platforms(folder: Path, capsys: pytest.CaptureFix
 
 
 def test_ctrl_c_ends_a_conversation_cleanly(folder: Path) -> None:
+<<<<<<< HEAD
     """A rule that waits in a thread holds the virtual clock back until the operating-system signal arrives."""
+=======
+    """One rule waits for input in a thread, and so holds the virtual clock back. The end of the input ends the talk as
+    well, so the test keeps the input open until the signal has cancelled this rule."""
+>>>>>>> fixes
     (folder / "slow.py").write_text(
         STORYTELLER
         + """
-@module.rule(when=rs.startup)
-async def begin(ctx):
-    print("begun", flush=True)
-
 @module.rule(when=rs.startup.detached(), background=True)
 async def wait(ctx):
     await ctx.sleep(100000)
@@ -148,7 +149,12 @@ async def wait(ctx):
 @module.rule(when=rs.startup.detached())
 async def keep(ctx):
     import asyncio, sys
-    await asyncio.to_thread(sys.stdin.readline)
+    print("begun", flush=True)
+    try:
+        await asyncio.to_thread(sys.stdin.readline)
+    except asyncio.CancelledError:
+        print("cancelled", flush=True)
+        raise
 """
     )
     wav(folder / "in.wav", track((0.5, "What do you think about the weather?"), length=3.0))
@@ -158,5 +164,6 @@ async def keep(ctx):
         assert process.stdout is not None
         assert process.stdout.readline() == "begun\n"
         process.send_signal(signal.SIGINT)
+        assert process.stdout.readline() == "cancelled\n"
         _, errors = process.communicate(timeout=60)
     assert (process.returncode, complaints(errors)) == (130, "")

@@ -27,6 +27,7 @@ def lexicon() -> None:
         ("im marlene and i live in munich", "I'm Marlene and I live in Munich."),
         ("hello how are you", "Hello, how are you?"),
         ("its cold today", "It's cold today."),
+        ("no its ghent", "No, it's Ghent."),
         ("lets play a game", "Let's play a game."),
         ("she lets me play", "She lets me play."),
         ("wats ur name", "What's your name?"),

@@ -14,14 +14,14 @@ SETS = ("told_rows", "told_blind_rows", "told_fresh_rows", "told_later_rows", "t
 
 def changes(sentence: str) -> frozenset[str]:
     """Return how an utterance changes the known facts: the values that it removes, and the values that it adds."""
-    _, talk, known = skills.talk_before(sentence)
+    _, _, known = skills.talk_before(sentence)
     meaning = skills.meaning_of(sentence)
     if meaning.kind in ("strike", "forget", "mistaken"):
         return frozenset([meaning.kind])
     if meaning.kind not in ("told", "corrected"):
         return frozenset()
-    facts = dict(learn(known, meaning.facts, talk.latest if meaning.kind == "corrected" else ()).facts)
-    for name in (fact for fact in meaning.facts if fact.topic == NAME):
+    facts = dict(learn(known, meaning.facts).facts)
+    for name in sorted((fact for fact in meaning.facts if fact.topic == NAME), key=lambda fact: not fact.gone):
         facts[NAME] = () if name.gone else name.values
     new = {f"{topic}={value}" for topic in facts for value in facts[topic] if value not in known.get(topic, ())}
     kept = {topic for topic in known if facts.get(topic) and topic in blind.SINGLE}  # a new value replaces the old one

@@ -296,7 +296,8 @@ def _written(piece: _Piece, following: Sequence[_Piece], last: str, lexicon: Lex
     asks = low in ("its", "ur") and any("?" in other.gap for other in following)
     if low == "its":
         verb = any(other.low in _AUX for other in following[:4])
-        return "it's" if piece.first and len(following) > 0 and not (asks or verb or word.isupper()) else None
+        begins = piece.first or last in _INTERJECTION
+        return "it's" if begins and len(following) > 0 and not (asks or verb or word.isupper()) else None
     if low in ("lets", "k", "ya") and (not opens or word == "K"):
         return None
     if low == "ur" and (opens or last in _SUPPOSING) and not asks and len(following) > 1 and not following[1].text:

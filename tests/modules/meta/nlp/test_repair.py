@@ -1,9 +1,14 @@
 """The repair of parse trees corrects clauses and questions that the parser misread."""
 
-import pytest
+from itertools import islice
 
+import pytest
+from hypothesis import example, given, settings
+from hypothesis import strategies as st
+
+from ravestate.modules.meta.nlp.contrast import contrasts_of
 from ravestate.modules.meta.nlp.inquiry import question_of
-from ravestate.modules.meta.nlp.pipeline import Pipeline
+from ravestate.modules.meta.nlp.pipeline import Pipeline, pipeline
 from ravestate.modules.meta.nlp.repair import repaired, tag_at
 from ravestate.modules.meta.nlp.statements import statements_of, triples_of
 
@@ -76,6 +81,104 @@ def test_the_kind_of_a_question_is_found_without_a_question_mark_or_an_auxiliary
 def test_a_noun_with_a_capital_inside_a_sentence_is_a_name(reader: Pipeline) -> None:
     (statement,) = statements_of(reader.read("my girlfriend Chiara bakes wonderful cakes")[0])
     assert statement.subject.names == ("Chiara",) and statement.subject.head == "girlfriend"
+
+
+@pytest.mark.parametrize(
+    ("text", "expected"),
+    [
+        ("I have a dog not a cat", "(I, have, dog) (I, not have, cat)"),
+        ("I have a parrot, not a hamster.", "(I, have, parrot) (I, not have, hamster)"),
+        ("i like plums not pears", "(i, like, plums) (i, not like, pears)"),
+        ("my name is Tom not Tim", "(my name, be, Tom) (my name, not be, Tim)"),
+        ("My name isn't Tim but Tom.", "(My name, be, Tom) (My name, not be, Tim)"),
+        ("i live in turin not leeds", "(i, live, turin) (i, not live, leeds)"),
+        ("I live in Turin, not in Bern.", "(I, live, Turin) (I, not live, Bern)"),
+        ("I don't work in Bern but in Turin", "(I, work, Turin) (I, not work, Bern)"),
+        ("I live not in Bern but in Turin", "(I, live, Turin) (I, not live, Bern)"),
+        ("she is tall not short", "(she, be, tall) (she, not be, short)"),
+        ("he's 31 not 13", "(he, be, 31) (he, not be, 13)"),
+        ("Jan, not Jon, is my uncle", "(Jan, be, my uncle) (Jon, not be, my uncle)"),
+        ("not Jon but Jan is my uncle", "(Jan, be, my uncle) (Jon, not be, my uncle)"),
+        # no contrasts
+        ("I don't eat anything but rice", "(I, not eat, anything)"),
+        ("I don't like tea, but coffee is fine", "(I, not like, tea) (coffee, be, fine)"),
+        ("I'm afraid that's not possible", "(I, be, afraid) (that, not be, possible)"),
+        ("i not understand", "(i, not understand, -)"),
+        ("I don't have a sister or a brother", "(I, not have, sister) (I, not have, brother)"),
+    ],
+)
+def test_a_contrast_asserts_one_phrase_and_denies_only_the_other(text: str, expected: str, reader: Pipeline) -> None:
+    assert triples(reader, text) == expected
+
+
+def test_a_statement_has_no_phrase_that_its_contrast_excludes(reader: Pipeline) -> None:
+    turin, bern = statements_of(reader.read("I live in Turin, not in Bern")[0])
+    assert [phrase.text for phrase in turin.phrases] == ["Turin"]
+    assert [phrase.text for phrase in bern.phrases] == ["Bern"]
+    assert turin.holds and bern.negated
+
+
+@pytest.mark.parametrize(
+    ("text", "pair"),
+    [
+        ("Turin, not Bern", ("Turin", "Bern")),
+        ("turin not leeds", ("turin", "leeds")),
+        ("not Bern, Turin", ("Turin", "Bern")),
+        ("not bern but turin", ("turin", "bern")),
+        ("i said turin not bern", ("turin", "bern")),
+        ("it's Turin, not Bern", ("Turin", "Bern")),
+        ("Tim is my cousin, not my brother", ("my cousin", "my brother")),
+    ],
+)
+def test_contrasts_are_found_in_texts_without_a_verb_as_well(
+    text: str, pair: tuple[str, str], reader: Pipeline
+) -> None:
+    (found,) = contrasts_of(repaired(reader.read(text)[0]))
+    assert (found.right.text, found.wrong.text) == pair
+
+
+@given(
+    st.lists(
+        st.sampled_from(
+            [
+                "not",
+                "but",
+                ",",
+                ".",
+                "no",
+                "and",
+                "I",
+                "my",
+                "sister",
+                "Tom",
+                "Leeds",
+                "live",
+                "in",
+                "is",
+                "isn't",
+                "a",
+                "dog",
+                "tall",
+                "that",
+                "of",
+            ]
+        )
+    )
+)
+@example(["dog", ","]).via("a comma with nothing after it")
+@example(["that", "'s", "misty", "outside", ",", "not", "sunny"]).via("once a tree with a circle")
+@settings(max_examples=200, deadline=None)
+def test_the_words_of_any_repaired_tree_have_a_root_above_them(words: list[str]) -> None:
+    tree = repaired(pipeline("").read(" ".join(words))[0])
+    for word in tree.words:
+        above = [word, *islice(tree.ancestors(word), len(tree.words))]
+        assert above[-1].head == above[-1].index
+    contrasts_of(tree)
+
+
+@pytest.mark.parametrize("text", ["my name not tom", "why not pizza", "not now", "I live in Rome, not all the time"])
+def test_other_negations_are_no_contrasts(text: str, reader: Pipeline) -> None:
+    assert contrasts_of(repaired(reader.read(text)[0])) == ()
 
 
 @pytest.mark.parametrize("text", ["I'm thinking of moving to Bern", "we are moving to Bern"])

@@ -67,6 +67,33 @@ def test_the_analysis_is_one_record_with_acts_feelings_and_statements() -> None:
         assert seen.act("farewell") is None
 
 
+def texts_written(first: str, second: str) -> list[Any]:
+    """Return the values of `nlp.text` after two utterances at the same time."""
+    with simulate(nlp) as sim:
+        sim.context.put(rawio.input, first)
+        sim.context.put(rawio.input, second)
+        sim.settle()
+        return [record.value for record in sim.trace if isinstance(record, Set) and record.slot == nlp.text.name]
+
+
+def test_utterances_keep_their_order_before_the_analysis_begins(monkeypatch: pytest.MonkeyPatch) -> None:
+    calls: list[int] = []
+    later = threading.Event()
+
+    def prepare(*rest: Any) -> None:
+        calls.append(len(calls))
+        if calls == [0]:
+            later.wait(0.2)  # by now the second utterance would have been analysed if it did not wait for the first
+
+    def read(text: str, *rest: Any) -> Any:
+        later.set()
+        return analyse(text, *rest)
+
+    monkeypatch.setattr(rules, "intent_matcher", prepare)
+    monkeypatch.setattr(rules, "analyse", read)
+    assert texts_written("I live in Ulm.", "No, in Bremen.") == ["I live in Ulm.", "No, in Bremen."]
+
+
 def test_simultaneous_utterances_are_analysed_in_order(
     monkeypatch: pytest.MonkeyPatch,
 ) -> None:
@@ -80,12 +107,7 @@ def test_simultaneous_utterances_are_analysed_in_order(
         return analyse(text, *rest)
 
     monkeypatch.setattr(rules, "analyse", read)
-    with simulate(nlp) as sim:
-        sim.context.put(rawio.input, "I live in Ulm.")
-        sim.context.put(rawio.input, "No, in Bremen.")
-        sim.settle()
-        written = [record.value for record in sim.trace if isinstance(record, Set) and record.slot == nlp.text.name]
-    assert written == ["I live in Ulm.", "No, in Bremen."]
+    assert texts_written("I live in Ulm.", "No, in Bremen.") == ["I live in Ulm.", "No, in Bremen."]
 
 
 def test_every_utterance_raises_the_changed_signal_of_every_slot() -> None:

@@ -36,9 +36,9 @@ def test_without_a_job_there_is_no_employer() -> None:
 
 
 def test_a_correction_replaces_only_the_wrong_value() -> None:
-    assert learn({"hobby": ("chess", "judo")}, [Fact("hobby", ("ludo",))], ("judo",)).facts == {
-        "hobby": ("chess", "ludo")
-    }
+    assert learn(
+        {"hobby": ("chess", "judo")}, [Fact("hobby", ("ludo",)), Fact("hobby", ("judo",), gone=True)]
+    ).facts == {"hobby": ("chess", "ludo")}
 
 
 def test_facts_from_this_conversation_take_precedence_over_memory() -> None:

@@ -9,7 +9,11 @@ import pytest
 from modules.skill.persqa.conftest import Look
 from modules.skill.persqa.test_scenarios import agent, answers, knower, meant
 from ravestate.modules import ontology, persqa
+from ravestate.modules.meta.nlp.analysis import analyse
+from ravestate.modules.meta.nlp.pipeline import pipeline
 from ravestate.modules.meta.ontology import worker
+from ravestate.modules.skill.persqa.reading import Reader
+from ravestate.modules.skill.persqa.told import Told, recalled, told_in
 
 pytestmark = pytest.mark.usefixtures("reader")
 
@@ -166,3 +170,41 @@ def test_wishes_questions_hearsay_denials_and_trivial_remarks_are_not_kept(file:
     with agent(file) as sim:
         sim.say(text)
         assert dict(sim.read(persqa.told)) == {}
+
+
+@pytest.mark.parametrize(
+    ("told", "question", "answer"),
+    [
+        (
+            ("my neighbour Karl plays the drums", "my neighbour is ill", "my neighbour has a cat"),
+            "Who is my neighbour?",
+            ["your neighbour Karl plays the drums"],
+        ),
+        (("my neighbour is karl", "my neighbour was late"), "who is my neighbour", ["your neighbour is karl"]),
+        (("my boss is Ms Voss", "my boss was late today"), "who is my boss?", ["your boss is Ms Voss"]),
+        (
+            ("my neighbour is called Karl", "my neighbours have a dog"),
+            "what is my neighbour called?",
+            ["your neighbour is called Karl"],
+        ),
+        (
+            ("my neighbour Karl plays the drums", "my neighbour Petra sings"),
+            "who are my neighbours?",
+            ["your neighbour Karl plays the drums", "your neighbour Petra sings"],
+        ),
+        (("my neighbour sings",), "what is my neighbour called?", []),
+        (("my neighbour is Karl", "my neighbour is Tom"), "who is my neighbour?", ["your neighbour is Tom"]),
+        (
+            ("my neighbour Karl plays the drums", "my neighbour is ill"),
+            "what do you know about my neighbour?",
+            ["your neighbour Karl plays the drums", "your neighbour is ill"],
+        ),
+    ],
+)
+def test_a_question_for_a_person_is_answered_with_their_name(
+    told: tuple[str, ...], question: str, answer: list[str]
+) -> None:
+    said: list[Told] = []
+    for text in told:
+        said += told_in(Reader(analyse(text, pipeline(""))), said)[1]
+    assert [one.text for one in recalled(Reader(analyse(question, pipeline(""))), said, {})] == answer

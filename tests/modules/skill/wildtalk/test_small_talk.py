@@ -1,6 +1,7 @@
 """The listening skill and the gate in a running agent, in virtual time."""
 
-from collections.abc import AsyncGenerator, Iterator, Sequence
+import threading
+from collections.abc import AsyncGenerator, Callable, Iterator, Sequence
 from dataclasses import replace
 from typing import Any
 
@@ -10,7 +11,8 @@ import ravestate as rs
 from ravestate.language.chat import Message, Progress
 from ravestate.language.matcher import bundled_matcher
 from ravestate.modules import interloc, rawio, wildtalk
-from ravestate.modules.skill.wildtalk.listening import ListeningBackend, State
+from ravestate.modules.skill.wildtalk import rules
+from ravestate.modules.skill.wildtalk.listening import Listener, ListeningBackend, State
 from ravestate.modules.skill.wildtalk.listening.state import Game
 from ravestate.modules.skill.wildtalk.names import overheard
 from ravestate.modules.skill.wildtalk.small_talk import learn_all
@@ -72,6 +74,26 @@ def test_without_a_model_the_listening_skill_answers(sim: Simulation) -> None:
     sim.say("my mother is ill")
     assert len(sim.said) == 1
     assert sim.read(wildtalk.listening).tone == "sad"
+
+
+def test_slow_checks_do_not_block_the_event_loop(sim: Simulation, monkeypatch: pytest.MonkeyPatch) -> None:
+    checked: list[tuple[str, bool]] = []
+
+    def noted(name: str, check: Callable[..., Any]) -> Callable[..., Any]:
+        def run(*given: Any) -> Any:
+            checked.append((name, threading.current_thread() is loop))
+            return check(*given)
+
+        return run
+
+    loop = threading.current_thread()
+    monkeypatch.setattr(rules, "claims", noted("claims", rules.claims))
+    monkeypatch.setattr(rules, "needs_comfort", noted("needs_comfort", rules.needs_comfort))
+    monkeypatch.setattr(Listener, "continues", noted("continues", Listener.continues))
+    for text in ("my dog has died", "yes", "tell me a joke"):
+        sim.say(text)
+    assert {name for name, _ in checked} == {"claims", "needs_comfort", "continues"}
+    assert not any(blocks for _, blocks in checked)
 
 
 def test_it_answers_once_although_two_clauses_wait_for_the_input(sim: Simulation) -> None:

@@ -19,11 +19,13 @@ from ravestate.language.sentences import sentences as sentences_of
 
 from .answer import YesNo, yesno_of
 from .clause import Clause
+from .contrast import Contrast, contrasts_of
 from .inquiry import question_of
-from .introduction import Introduction, introduction_in
+from .introduction import Introduction, introductions_in
 from .pipeline import Pipeline
 from .question_word import QuestionWord
 from .reading import Reading
+from .repair import repaired
 from .statement import Statement, Triple
 from .statements import statements_of
 from .tree import Tree
@@ -77,6 +79,8 @@ class Analysis:
     """The sentences of the normal form."""
     statements: tuple[Statement, ...] = ()
     """The triples, with flags that say whether they are denied, past, hearsay and so on."""
+    contrasts: tuple[Contrast, ...] = ()
+    """The contrasts, also in texts without a verb: *Leipzig, not Leeds*."""
     acts: Mapping[str, Match] = field(default_factory=dict[str, Match])
     """Class in ``acts.yaml``, such as ``greeting`` → the best match of a sentence for this act."""
     feelings: Mapping[str, Match] = field(default_factory=dict[str, Match])
@@ -101,7 +105,8 @@ class Analysis:
     @property
     def introduction(self) -> Introduction | None:
         """The user's name with the other words, if the user says their name beside something else."""
-        return introduction_in(self.sentences, [one.text for one in self.entities if one.label == "PERSON"])
+        persons = [one.text for one in self.entities if one.label == "PERSON"]
+        return next(filter(None, (one.named(persons) for one in introductions_in(self.tree))), None)
 
     @property
     def acted(self) -> tuple[str, ...]:
@@ -164,6 +169,7 @@ def analyse(
         about_agent=_is_about_agent(tree, names),
         sentences=sentences,
         statements=statements,
+        contrasts=contrasts_of(repaired(tree)),
         acts=acts(sentences),
         feelings=feelings(sentences, names),
         asks=_by_name(bundled_matcher("asks").match_all(sentences)),

@@ -8,6 +8,7 @@ from functools import cached_property
 
 from ravestate.language.contractions import word_set
 
+from .contrast import is_denied
 from .phrase import Phrase, adjective_phrase, conjuncts, gerund_phrase, noun_phrase, phrase_of
 from .question_word import AUXILIARIES, QUESTION_WORDS, QuestionWord, kind_at
 from .repair import repaired
@@ -87,6 +88,11 @@ class Clause:
             for object, contrasted in objects or [(NOTHING, False)]:
                 predicate = ("not " if self.negated != contrasted else "") + self.predicate
                 yield Triple(_text(subject), predicate, _text(object)), subject, object
+        denied = [part for part, contrasted in self._written(self.own_subjects) if contrasted] if subjects else []
+        for subject in denied if subjects == self.subjects else ():  # as in "Pia, not Mia, is my sister"
+            for object, contrasted in objects or [(NOTHING, False)]:
+                predicate = ("not " if self.negated == contrasted else "") + self.predicate
+                yield Triple(_text(subject), predicate, _text(object)), subject, object
 
     # --------------------------------------------------------------------------------------- the verb
 
@@ -126,13 +132,16 @@ class Clause:
         """Whether the clause is negated."""
         for word in self.own:
             before, after = self.tree.before(word), self.tree.after(word)
-            if word.low in NEGATIONS and not self._denies_conjunct(word) and self.tree.head(word) not in self.chain[1:]:
+            alone = is_denied(self.tree, self.tree.head(word))
+            if word.low in NEGATIONS and not alone and self.tree.head(word) not in self.chain[1:]:
                 return True  # unlike "decide not to go", which denies only "go"
-            if before is not None and (before.low, word.low) == ("no", "longer"):
+            if before is not None and (before.low, word.low) == ("no", "longer") and not alone:
                 return True
             if word.low == "neither" and word.dep in ("cc", "preconj", "det"):
                 return True
-            if word.low == "no" and word.dep == "det" and after and after.low != "one":
+            # Unlike "it's the best, no doubt" and "I'm Bob, no wait, I'm Bert".
+            aside = (before is not None and before.low == ",") or self.tree.head(word).dep == "advmod"
+            if word.low == "no" and word.dep == "det" and after and after.low != "one" and not aside:
                 return True
         head = self.head_clause  # as in "I don't smoke or drink"
         if self.verb.dep != "conj" or head is None or self.own_subjects:
@@ -277,7 +286,7 @@ class Clause:
         if own and own[0].low in ("'s", "us", "s"):
             return [_WE]
         if own:
-            return [part for part, _ in self._written(own)]
+            return [part for part, contrasted in self._written(own) if not contrasted]
         if verb.dep == "ROOT" or (verb.dep in ("ccomp", "parataxis", "dep") and head is None):
             return self._unsaid()
         if verb.dep == "acl" or head is None:
@@ -433,9 +442,7 @@ class Clause:
                     gerund = word.pos in VERBAL and word.dep != "ROOT"
                     words = gerund_phrase(self.tree, word) if gerund else noun_phrase(self.tree, word)
                 words = [other for other in words if other == word or other not in self._beside]
-                first = self.tree.before(self.tree.subtree(word)[0]), self.tree.subtree(word)[0]
-                contrasted = any(w is not None and w.low == "not" and self._denies_conjunct(w) for w in first)
-                found.append((self._whose(phrase_of(self.tree, word, words)), word.dep == "conj" and contrasted))
+                found.append((self._whose(phrase_of(self.tree, word, words)), is_denied(self.tree, word)))
         return found
 
     def _whose(self, phrase: Phrase) -> Phrase:
@@ -456,14 +463,6 @@ class Clause:
         adjective = word.pos in ("ADJ", "VERB", "ADV") and word.tag != "VBG"
         beside = self.tree.children(word, "det", "amod", "poss")
         return adjective and not beside and (lemma_of(verb) == "be" or word.dep != "dobj")
-
-    def _denies_conjunct(self, negation: Word) -> bool:
-        """Return whether a *not* denies one conjunct alone, and not the verb: *tea, but not coffee*; *a dog, not a cat*."""
-        after = self.tree.after(negation)
-        for word in () if after is None else (after, *self.tree.ancestors(after)):
-            if word.dep in ("conj", "appos") and word.index not in self._clauses:
-                return self.tree.subtree(word)[0] in (after, negation)
-        return False
 
 
 def _text(part: Part) -> str | QuestionWord:

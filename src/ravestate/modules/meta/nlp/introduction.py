@@ -1,53 +1,87 @@
-"""An introduction within a longer utterance: *my name is Ada. I have had a long day*."""
+"""Introductions: *it's me, Ilka*, *Ilka here*, *my name is Ada, and I have had a long day*."""
 
 from __future__ import annotations
 
 import re
-from collections.abc import Sequence
-from dataclasses import dataclass
+from collections.abc import Collection, Iterator
+from dataclasses import dataclass, replace
+
+from .tree import Tree
+from .verbs import VERBAL
 
 SHORTEST = 3
 """The minimum number of words that say more than the name."""
 
-_NAMED = re.compile(
-    r"^\W*(?:(?:hi|hello|hey|oh|and|well|so|by the way|btw|good (?:morning|evening|day)|nice to meet you)\b\W*)*"
-    r"(?:my name(?: is|'s)|you (?:can|may) call me|call me|i am called|i am|i'm|this is)\s+"
-    r"([^\W\d_][\w'’-]*)(?:\s*(?:,|\band\b|\bbut\b|by the way|btw)+\s*(.*)|\W*)$",
+_CLAUSE = re.compile(
+    r"[.!?;:,…–—()\n]+\s*|\s(?:and|but|so|by the way|btw)\s(?=(?:i|my|we|our|it|this|that|the|he|she|they|there)\b)",
     re.IGNORECASE,
 )
+_OPENERS = (
+    r"(?:(?:and|but|so|oh|ah|well|now|yes|yeah|no|nope|ok|okay|hi|hiya|hello|hey|hallo|there|again|actually|sorry|"
+    r"anyway|good \w+|nice to meet you|by the way|btw) )*"
+)
+_CLOSERS = r"(?: (?:again|here|speaking|by the way|actually|now|then|today|too|at your service|as it happens))*"
+_WORD = r"[^\W\d_](?:[\w'’-]*\w)?"
+_NAME = re.compile(rf"(?P<name>{_WORD}(?: {_WORD}){{0,2}}?)")
+_BESIDE = r"(?: from \w.*)?"
+_IT_IS = r"it(?: is|['’]?s)|this is"
+_FRAMES = [
+    re.compile(frame, re.IGNORECASE)
+    for frame in (
+        rf"{_OPENERS}(?P<sure>my name(?: is|['’]s)|(?:you (?:can|may) )?call me|i(?: am|['’]m) called) {_NAME.pattern}{_CLOSERS}{_BESIDE}",
+        rf"{_OPENERS}(?:(?P<pointing>{_IT_IS})(?: me)?|i(?: am|['’]m)) {_NAME.pattern}{_CLOSERS}{_BESIDE}",
+        rf"{_OPENERS}{_NAME.pattern} (?:again )?here(?: again)?{_BESIDE}",
+    )
+]
+_ME = re.compile(rf"{_OPENERS}(?:{_IT_IS})(?: only| just)? me{_CLOSERS}", re.IGNORECASE)
 _POLITE = re.compile(
-    r"\W*(?:hi|hello|hey|good (?:morning|evening|day|afternoon)|(?:nice|pleased|glad) to meet you|there|you too)\W*",
+    r"(?:hi|hello|hey|good (?:morning|evening|day|afternoon)|(?:nice|pleased|glad) to meet you|there|you too)",
     re.IGNORECASE,
 )
 """A part that is only polite."""
-_SURELY = re.compile(r"\b(?:my name|call me|called)\b", re.IGNORECASE)
 
 
 @dataclass(frozen=True, slots=True)
 class Introduction:
-    """The name that an utterance tells, and its other words."""
+    """Words in the place of the user's name: *Ilka*, and perhaps also *tired*, in *I'm tired*."""
 
     name: str
     rest: str
+    """The other words of the utterance, without polite words."""
+    sure: bool = False
+    """Whether the words around the name can only introduce it: *my name is*, *call me*."""
+    pointing: bool = False
+    """Whether the words may point at something else: *it's Ilka*, *this is Ilka*."""
+    late: bool = False
+    """Whether a clause with a verb stands before it: *my dog isn't Rex, it's Max*."""
+
+    def named(self, persons: Collection[str]) -> Introduction | None:
+        """Return the introduction with its name in capitals, if the utterance also says more; None if it does not.
+
+        Unless the words are sure, the name must be among `persons`.
+        """
+        known = self.sure or self.name.lower() in map(str.lower, persons)
+        if not known or " " in self.name or len(re.findall(r"\w+", self.rest)) < SHORTEST:
+            return None
+        return replace(self, name=self.name[:1].upper() + self.name[1:])
 
 
-def introduction_in(sentences: Sequence[str], names: Sequence[str]) -> Introduction | None:
-    """Return the introduction in an utterance that also says more; None if there is none.
-
-    Args:
-        sentences: The sentences of the utterance.
-        names: The names of persons in it. After *I am*, only such a word is a name.
-
-    Example:
-        >>> introduction_in(["I'm Ada.", "We moved here in May."], ["Ada"])
-        Introduction(name='Ada', rest='We moved here in May.')
-    """
-    for place, sentence in enumerate(sentences):
-        found = _NAMED.match(sentence)
-        if found is None or not (_SURELY.search(sentence) or found[1].lower() in map(str.lower, names)):
+def introductions_in(tree: Tree) -> Iterator[Introduction]:
+    """Yield the words of an utterance that may be the user's name, each with the rest of the utterance."""
+    ends = [*_CLAUSE.finditer(tree.text)]
+    starts = [0, *(end.end() for end in ends)]
+    stops, marks = [*(end.start() for end in ends), len(tree.text)], [*(end[0] for end in ends), ""]
+    pieces, before = [tree.text[start:stop].strip() for start, stop in zip(starts, stops, strict=True)], ""
+    for place, (piece, mark) in enumerate(zip(pieces, marks, strict=True)):
+        if "?" in mark and not before:
             continue
-        parts = (*sentences[:place], found[2] or "", *sentences[place + 1 :])
-        rest = " ".join(part for part in parts if part and not _POLITE.fullmatch(part))
-        if len(re.findall(r"\w+", rest)) >= SHORTEST:
-            return Introduction(found[1][:1].upper() + found[1][1:], rest)
-    return None
+        found = next(filter(None, (frame.fullmatch(piece) for frame in _FRAMES)), None)
+        found = found or (_NAME.fullmatch(piece) if _ME.fullmatch(before) else None)
+        before = piece
+        if found is None or _ME.fullmatch(piece):
+            continue
+        told, others = found.groupdict(), [at for at in range(len(pieces)) if at != place and pieces[at]]
+        kept = (at for at in others if not _POLITE.fullmatch(pieces[at]))
+        rest = "".join(pieces[at] + (marks[at] if at + 1 != place else " ") for at in kept).strip(" ,")
+        late = any(word.pos in VERBAL and word.start < starts[place] for word in tree.words)
+        yield Introduction(told["name"], rest, bool(told.get("sure")), bool(told.get("pointing")), late)

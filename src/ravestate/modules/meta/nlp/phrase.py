@@ -65,6 +65,9 @@ def phrase_of(tree: Tree, head: Word, words: list[Word] | None = None) -> Phrase
     of = [word for word in tree.children(noun or head, "prep") if word.low == "of"]
     owned = [*tree.children(noun or head, "poss"), *tree.children_of(of, "pobj"), *tree.children(head, "poss")]
     owner = next(iter(owned), None)
+    first = head
+    while first.dep == "conj" and tree.head(first).dep in ("conj", "pobj"):  # as in "in Rome and Paris"
+        first = tree.head(first)
     return Phrase(
         tree.phrase(noun_phrase(tree, head) if words is None else words),
         head="" if noun is None else noun.lemma.lower() if noun.pos == "NOUN" else noun.low,
@@ -72,7 +75,7 @@ def phrase_of(tree: Tree, head: Word, words: list[Word] | None = None) -> Phrase
         owner=owner and phrase_of(tree, owner, [word for word in noun_phrase(tree, owner) if word.dep != "case"]),
         amount=_amount(tree, head),
         person=person_of(head),
-        preposition=tree.head(head).low if head.dep in ("pobj", "pcomp") else "",
+        preposition=tree.head(first).low if first.dep in ("pobj", "pcomp") else "",
     )
 
 
@@ -92,7 +95,9 @@ def noun_phrase(tree: Tree, head: Word, *, joined: bool = False) -> list[Word]:
     kept = [head]
     for child in tree.children(head):
         of = child.low == "of" and child.index > head.index and bool(tree.children(child))
-        if of or _belongs(tree, child, head) or (joined and child.dep in ("cc", "conj")):
+        denied = any(word.low == "not" for word in tree.children(child, "neg"))  # as in "capital of Peru, not Chile"
+        listed = joined and child.dep in ("cc", "conj") and not denied
+        if of or _belongs(tree, child, head) or listed:
             kept += noun_phrase(tree, child, joined=of or child.dep == "amod" or (joined and child.dep != "poss"))
     return _with_hyphens(tree, kept)
 

@@ -7,6 +7,7 @@ from dataclasses import replace
 
 from ravestate.language.contractions import word_set
 
+from .contrast import join_contrasts
 from .question_word import AUXILIARIES, QUESTION_WORDS
 from .tree import SUBJECTS, Tree, Word
 
@@ -36,9 +37,12 @@ def repaired(tree: Tree) -> Tree:
         _make_present(tree, words, word)
         _make_way(tree, words, word)
         _make_predicate(tree, words, word)
+        if word.dep == "compound" and word.tag == "NNS" and tree.children(word, "poss"):  # as in "my brothers wife"
+            words[word.index] = replace(word, dep="poss")
         if word.dep == "advmod" and word.pos == "PROPN" and word.head == word.index - 1:  # as in "you speak Greek"
             words[word.index] = replace(word, dep="dobj")
     words = _split_relatives(Tree(tree.text, words))
+    words = join_contrasts(Tree(tree.text, words))
     return tree if words == list(tree.words) else Tree(tree.text, words)
 
 

@@ -106,9 +106,9 @@ async def understand(ctx: rs.RuleContext) -> None:
     named = "agent_names" in settings.model_fields_set
     called = settings.agent_names if named else (ctx[interloc.agent],)
     present = tuple(name for name in ctx[interloc.users].values() if isinstance(name, str))
-    designed = await asyncio.to_thread(intent_matcher, tuple(ctx[names.intents].values()))
-    parser = pipeline(settings.pipeline)
-    async with ctx[names.lock]:
+    intents, parser = tuple(ctx[names.intents].values()), pipeline(settings.pipeline)
+    async with ctx[names.lock]:  # before the first wait, because threads do not keep the order of the utterances
+        designed = await asyncio.to_thread(intent_matcher, intents)
         reading = asyncio.create_task(read(ctx, heard))
         try:
             seen = await asyncio.to_thread(analyse, heard, parser, called, present, designed)

@@ -10,6 +10,7 @@ from ravestate.language.contractions import word_set
 from ravestate.language.entity import Entity
 
 from .clause import NOTHING, Clause
+from .contrast import contrasted_with, is_denied
 from .phrase import Phrase, person_of, phrase_of
 from .repair import is_tag
 from .statement import Statement, Triple
@@ -93,7 +94,7 @@ class _Assertion:
             subject,
             object,
             verb=self._clause.lemma,
-            phrases=tuple(self._phrases()),
+            phrases=tuple(self._phrases(object, denied=triple.predicate.startswith("not ") != self._clause.negated)),
             when=self._when,
             negated=triple.predicate.startswith("not ") != self._denied_above,
             past=self._past and not self._conditional,
@@ -227,8 +228,13 @@ class _Assertion:
         assert self._above is not None
         return not self._low & {"if", "whether"} and self._above._clause.lemma in _KNOWN_AS_TRUE
 
-    def _phrases(self) -> Iterator[Phrase]:
+    def _phrases(self, object: Phrase, *, denied: bool) -> Iterator[Phrase]:
+        """Yield the prepositional phrases of a statement, without those that only the other side of a contrast has."""
         for word in self._clause.own:
+            if contrasted_with(self._tree, word) if denied else is_denied(self._tree, word):
+                continue
+            if denied and is_denied(self._tree, word) and phrase_of(self._tree, word) != object:
+                continue
             above = list(self._tree.ancestors(word))
             inside = above[: next((n for n, verb in enumerate(above) if verb in self._clause.verbs), len(above))]
             if word.dep in ("pobj", "oprd") and not any(other.dep in SUBJECTS or other.low == "of" for other in inside):

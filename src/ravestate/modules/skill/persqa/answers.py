@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import re
-from collections.abc import Collection
 
 from ravestate.language.normal import plain
 from ravestate.modules import nlp
@@ -45,11 +44,6 @@ _CALL = re.compile(_PIECE.pattern.replace("|why|what|how|where|who", ""), re.IGN
 _WHERE = re.compile(r"\s(?:in|at|from|for|on|near|by)\s(.+)$", re.IGNORECASE)
 _PLACED = frozenset(["name", "people", "place", "work", "subject"])
 """Kinds of values that leave out a place after them: in *teacher at a school*, the value is *teacher*."""
-_NOT_THIS = re.compile(
-    r"^\W*(?:(?:no|it is|i am|i)\W+)*not (?P<wrong>.+?)[,;.]\s*(?:(?:but|it is|i am|rather) )*(?P<right>.+)$",
-    re.IGNORECASE,
-)
-_NOT_THAT = re.compile(r"^(?:no\W+)?(?:(?:it is|i am) )?(?P<right>.+?)[,;]? not (?P<wrong>\w.*)$", re.IGNORECASE)
 
 
 def spelled_out(text: str) -> str:
@@ -131,26 +125,11 @@ def opening(text: str, topic: str, seen: nlp.Analysis) -> list[Fact]:
     return []
 
 
-def correction(
-    text: str, topic: str, known: Collection[str], seen: nlp.Analysis, *, explicit: bool = False
-) -> list[Fact]:
-    """Return the facts in a correction: *Bremen, not Hannover*, or just *no, Bremen*.
-
-    Args:
-        text: The utterance, with its short forms written out.
-        topic: The topic to correct.
-        known: The values that the agent has understood.
-        seen: The analysis of the utterance.
-        explicit: Whether a correction must name the wrong value: *Bremen, not Hannover* does, *no, Bremen* does not.
-    """
-    if both := _NOT_THIS.match(text) or _NOT_THAT.match(text):
-        wrong = _PREPOSITIONS.sub("", both["wrong"]).strip(" .!?").casefold()
-        denied = wrong in {value.casefold() for value in known}
-        return answer(_CORRECTIONS.sub("", both["right"]), topic, seen) if denied else []
-    opening = None if explicit else _CORRECTIONS.match(text)
+def without_opening(text: str) -> str:
+    """Return the words after *no*, *sorry* and the like; empty if a text has no such opening, or is an idiom."""
+    opening = _CORRECTIONS.match(text)
     rest = text[opening.end() :] if opening else ""
-    idiom = rest and rest.lower().split()[0].strip(",.!") in WORDS["idioms"]
-    return answer(rest, topic, seen) if rest and not idiom else []
+    return "" if not rest or rest.lower().split()[0].strip(",.!") in WORDS["idioms"] else rest
 
 
 def may_stand_alone(seen: nlp.Analysis, *, clear: bool = False) -> bool:

@@ -1,9 +1,9 @@
-"""Changes of known facts: the only place where an utterance ends a fact, or replaces its value by another.
+"""Changes of known facts: statements that end a fact, or replace its value by another.
 
 A statement changes a fact under two conditions. It must be the user's own: the user is the subject, and nobody reports
-the statement. And its verb must end facts of this topic, with the value itself as the object. A correction in a few words
-(*no, Bremen*, *Lora with an L*) works only for a fact that either side mentioned in the last utterances.
-Everything else leaves the facts alone.
+the statement. And its verb must end facts of this topic, with the value itself as the object. A correction by sound or
+spelling (*Lora with an L*) works only for a fact that either side mentioned in the last utterances. `contrast` reads the
+other corrections. Everything else leaves the facts alone.
 """
 
 from __future__ import annotations
@@ -133,17 +133,20 @@ def renamed_in(reader: Reader, said: nlp.Statement) -> Iterator[tuple[str, str, 
 
     The new topic is empty if the user only denies the old topic: *Tom is my cousin, not a friend*."""
     name, object = said.subject.text, said.object
-    new = reader.relative(object.head) if object.owner is None or object.of("I") else ""
+    new = reader.relative(object.head) if object.text == object.head else reader.noun(object)
+    denied = {
+        reader.relative(one.object.head)
+        for one in reader.seen.statements
+        if one.negated and one.subject == said.subject
+    }
     for topic, values in reader.known.items() if said.verb == "be" and not said.negated else ():
         if TOPICS[topic].kind != "people" or topic == new or not any(same(name, value) for value in values):
             continue
-        nouns = "|".join(map(re.escape, TOPICS[topic].nouns))
-        denied = re.search(rf"\bnot (?:an?|my) (?:{nouns})\b(?! of)", reader.tree.text, re.IGNORECASE)
         verb = reader.verb(said)
         more = said.phrases or said.when or is_limited(reader, said) or (verb and reader.tree.children(verb, "advcl"))
         alone = object.text == object.head and not more  # not "Rex is a cat at heart"
         plain = alone and new and TOPICS[new].type == TOPICS[topic].type == "Animal"
-        if denied or plain:
+        if topic in denied or plain:
             yield topic, new, name
 
 
@@ -178,24 +181,26 @@ def is_brief(said: nlp.Statement) -> bool:
     return any(one.preposition == "for" and one.head in WORDS["leisure"] for one in said.phrases)
 
 
-def denied_beside(reader: Reader, topic: str, told: Collection[str]) -> tuple[str, ...]:
-    """Return the known values that the user denies while giving another: *Mia* in *Pia, not Mia, is my sister*."""
-    pattern = r"\bnot (?:(?:an?|the|in|from|at|for|my) )?{}\b"
-    return tuple(
-        value
-        for value in reader.known.get(topic, ())
-        if value not in told and re.search(pattern.format(re.escape(value)), reader.tree.text, re.IGNORECASE)
-    )
-
-
 def may_correct(seen: nlp.Analysis, topic: str) -> bool:
     """Return whether an utterance may correct a fact just mentioned. It may if its verbs only name, say or mean."""
-    finite = {word.lemma for word in seen.tree.words if word.tag in ("VBD", "VBZ", "VBP", "MD")}
-    pronouns = ("", "i", "it", "that", "this", "he", "she", "they")
+    opposed = {text for one in seen.contrasts for text in (one.right.text, one.wrong.text)}  # the tagger may see verbs
+    finite = {
+        word.lemma for word in seen.tree.words if word.tag in ("VBD", "VBZ", "VBP", "MD") and word.text not in opposed
+    }
+    people = TOPICS[topic].kind in ("people", "name")
+    pronouns = ("", "i", "it", "that", "this", *(("he", "she", "they") if people else ()))
+    nouns = (*TOPICS[topic].nouns, *(["name"] if people else []))
+    if finite - WORDS["speaking"]:
+        return False
     for said in seen.statements if finite else ():
-        named = said.subject.text.lower() in pronouns or said.subject.head in (*TOPICS[topic].nouns, "name")
+        if said.verb == "wait":
+            continue
+        owner = said.subject.owner
+        own = owner is None or owner.person == "I" or owner.text.lower() in ("his", "her", "its", "their")
+        noun = own and said.subject.head in nouns
+        named = said.subject.text.lower() in pronouns or noun
         more = {one.preposition for one in said.phrases} - {"", "with", "in", "from", "at", "for", "as"}
-        if finite - WORDS["speaking"] or not named or more or said.question:
+        if not named or more or said.question:
             return False
     return seen.question is None
 
@@ -206,7 +211,7 @@ def misheard(text: str, topic: str, latest: Collection[str], seen: nlp.Analysis)
         return []
     objects = [said.object.text for said in seen.statements if said.object.text]
     for word in seen.tree.words:
-        near = any(0 < _distance(word.low, value.lower()) <= 1 - ALIKE for value in latest)
+        near = any(is_similar(word.low, value) for value in latest)
         number = TOPICS[topic].kind == "number" and word.pos == "NUM" and number_in(word.low)
         named = near and word.pos in ("PROPN", "NOUN", "X")
         after = next((one.pos for one in seen.tree.words[word.index + 1 :] if one.pos != "DET"), "PUNCT")
@@ -221,5 +226,7 @@ def misheard(text: str, topic: str, latest: Collection[str], seen: nlp.Analysis)
     return []
 
 
-def _distance(one: str, other: str) -> float:
-    return 1 - SequenceMatcher(None, one, other).ratio()
+def is_similar(one: str, other: str) -> bool:
+    """Return whether two different values are spelled almost alike: *Lora*, *Nora*."""
+    one, other = one.lower(), other.lower()
+    return one != other and SequenceMatcher(None, one, other).ratio() >= ALIKE

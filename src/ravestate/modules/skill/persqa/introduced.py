@@ -1,60 +1,33 @@
 """The user's name in an introduction: *it's me, Ilka*, *Ilka here*, *I'm Ilka*.
 
-The words around the name decide, not the name itself, because the parser and the examples know few of the world's
-names. A word that English does not have is a name; of a word that English has, the entity or the examples decide.
+`nlp` finds the words in the place of a name. A word that English does not have is a name; of a word that English has, the
+entity or the examples decide. The parser and the examples know few of the world's names.
 """
 
 from __future__ import annotations
 
-import re
 from typing import TYPE_CHECKING
 
 from ravestate.language.lexicon import loaded_lexicon
+from ravestate.modules.meta.nlp.introduction import introductions_in
 
-from .answers import spelled_out
 from .kinds import is_remark, likeness
 from .topics import NAME, TOPICS
 from .values import value_of
+from .wording import among, same
 
 if TYPE_CHECKING:
     from ravestate.modules import nlp
 
     from .reading import Reader
 
-_CLAUSE = re.compile(r"[.!?;:,…–—()\n]+|\s(?:and|but|so)\s(?=(?:i|my|we|our|it|this)\b)", re.IGNORECASE)
-_OPENERS = r"(?:(?:and|but|so|oh|ah|well|now|yes|yeah|no|nope|ok|okay|hi|hiya|hello|hey|hallo|again|actually|sorry|anyway|good \w+|by the way) )*"
-_CLOSERS = r"(?: (?:again|here|speaking|by the way|actually|now|then|today|too|at your service|as it happens))*"
-_NAME = r"(?P<name>[^\W\d][\w'’-]*(?: [^\W\d][\w'’-]*){0,2}?)"
-_BESIDE = r"(?: from \w.*)?"
-_FRAMES = [
-    re.compile(frame, re.IGNORECASE)
-    for frame in (
-        rf"{_OPENERS}(?P<frame>(?:it is|its|this is)(?: me)?|i am) {_NAME}{_CLOSERS}{_BESIDE}",
-        rf"{_OPENERS}{_NAME} (?:again )?(?P<frame>here)(?: again)?{_BESIDE}",
-    )
-]
-_ME = re.compile(rf"{_OPENERS}(?:it is|its|this is)(?: only| just)? me{_CLOSERS}", re.IGNORECASE)
-_POINTING = re.compile(r"it|this", re.IGNORECASE)
-
 
 def introduced_in(reader: Reader) -> str:
     """Return the name in an introduction; empty if the user does not introduce themselves."""
-    text = spelled_out(reader.tree.text)
-    pieces = [(piece.strip(), after) for piece, after in _pieces(text)]
-    before, said = "", False
-    verbs = {word.low for word in reader.tree.words if word.pos in ("VERB", "AUX")}
-    for piece, mark in pieces:
-        if "?" in mark and not before:
-            continue
-        found = next(filter(None, (frame.fullmatch(piece) for frame in _FRAMES)), None)
-        pointed = found and _POINTING.match(found["frame"])
-        another = pointed and (_means_another(reader) or said)  # "my dog isn't Rex, it's Max"
-        if found and not another and (name := given_name(found["name"], reader.seen)):
+    for one in introductions_in(reader.tree):
+        another = one.pointing and (one.late or _means_another(reader, one.name))
+        if not another and not one.sure and (name := given_name(one.name, reader.seen)):
             return name
-        if _ME.fullmatch(before) and (name := given_name(piece, reader.seen)):
-            return name
-        before = piece
-        said = said or bool(verbs & set(re.findall(r"\w+", piece.lower())))
     return ""
 
 
@@ -71,15 +44,6 @@ def given_name(words: str, seen: nlp.Analysis) -> str:
     return value_of(words, TOPICS[NAME], seen, sure=sure) or ""
 
 
-def _pieces(text: str) -> list[tuple[str, str]]:
-    """Return the clauses of a text, each with the mark after it."""
-    ends = [*_CLAUSE.finditer(text)]
-    starts = [0, *(end.end() for end in ends)]
-    marks = [*(end[0] for end in ends), ""]
-    stops = [*(end.start() for end in ends), len(text)]
-    return [(text[start:stop], mark) for start, stop, mark in zip(starts, stops, marks, strict=True)]
-
-
 def _is_foreign(word: str) -> bool:
     """Return whether English has no such word, nor a frequent one for which it may be a typing error."""
     lexicon, low = loaded_lexicon(), word.lower()
@@ -88,7 +52,9 @@ def _is_foreign(word: str) -> bool:
     return word[:1].isupper() or lexicon.correction(low) == low
 
 
-def _means_another(reader: Reader) -> bool:
-    """Return whether *it is Ilka* answers a question about another, or corrects their name."""
+def _means_another(reader: Reader, name: str) -> bool:
+    """Return whether *it is Ilka* answers a question about another, corrects another value, or names a place."""
     topic = reader.asked or reader.recent
+    if topic != NAME and any(same(one.right.text, name) for one in reader.seen.contrasts):
+        return not any(among(one.wrong.text, reader.known.get(NAME, ())) for one in reader.seen.contrasts)
     return topic not in ("", NAME) and (bool(reader.asked) or TOPICS[topic].kind in ("people", "place", "organisation"))

@@ -22,13 +22,12 @@ class News:
     """Topics with values that were not known."""
 
 
-def learn(facts: Facts, told: Iterable[Fact], instead_of: tuple[str, ...] = ()) -> News:
+def learn(facts: Facts, told: Iterable[Fact]) -> News:
     """Return the user's facts, without the name, after they have told the facts `told`.
 
     Args:
         facts: The facts before.
         told: The new facts.
-        instead_of: The old values that the new facts correct.
 
     Example:
         >>> learn({"hobby": ("chess",)}, [Fact("hobby", ("go",)), Fact("home", ("Bremen",))]).facts
@@ -42,7 +41,7 @@ def learn(facts: Facts, told: Iterable[Fact], instead_of: tuple[str, ...] = ()) 
             continue
         topics.append(topic)
         if not fact.gone:
-            kept = without(now.get(topic, ()), instead_of) if TOPICS[topic].many else ()
+            kept = now.get(topic, ()) if TOPICS[topic].many else ()
             now[topic] = kept + without(values, kept)
             continue
         before = now.pop(topic, ())

@@ -12,25 +12,20 @@ from ravestate.modules.meta.nlp.phrase import Phrase
 from ravestate.modules.meta.nlp.tree import Word
 
 from .being import being_in, beside_name
-from .changes import denied_beside, denied_by, ended_by, is_partial, renamed_in, switched_in
+from .changes import denied_by, ended_by, is_partial, renamed_in, switched_in
 from .frames import framed_in
 from .links import Link, predicate_of, pursuit_in, trade_in
 from .relatives import is_former, named_in, owner_before
 from .topics import ASKS, LASTING, NAME, NOUNS, SAYS, TOPICS, WORDS, Fact, favourite
 from .values import is_gerund, value_of
-from .wording import Facts, among, without
+from .wording import Facts, alike, among, without
 
 _CALLED = frozenset(["be", "be called", "be named", "be spelled", "be spelt", "be written"])
 _ANY = re.compile(r"(?:any|there$|here$)", re.IGNORECASE)
-_TURN = re.compile(
-    r"(?:, (?:and )?|(?<! am)(?<! is)(?<! are)(?<!'m)(?<!'s)(?<!'re) (?=not (?:an?|the|in|at|from) [\w ]+\W*$))(not) |"
-    r",? but (?!i\b)",
-    re.IGNORECASE,
-)
-_NOT = re.compile(r"n['’]t\b|\b(?:not?|never)\b", re.IGNORECASE)
-_OPENING_NO = re.compile(r"(?:^|[.!?;,] )no\b(?! \w+ (?:is|was|has|can)\b)", re.IGNORECASE)
 _INSTEAD = re.compile(r"\bno,? wait\b|\bwait,? no\b|\bI mean\b|\bsorry, ", re.IGNORECASE)
 """Words with which speakers correct themselves: *I'm Voss, no wait, I'm Claudia*."""
+_MINE = frozenset(["mine", "ours"])
+"""Subjects that stand for something of the user's: *mine is Ada*, after *which dog is yours?*."""
 _NONE = frozenset(["none", "neither", "nobody"])
 
 
@@ -82,12 +77,14 @@ class Reader:
                     link.topic == NAME and not self.words.isdisjoint({"was", "were"})
                 )
                 known = self.known.get(link.topic, ())
-                if self._denies(said, link.phrase) or (over and values and among(values[0], known)):
-                    if values or link.phrase is None or _ANY.match(link.phrase.text):
-                        said_so = (*values, link.phrase.text if link.phrase else "")
-                        meant = tuple(one for one in known if among(one, said_so))
-                        if not meant or denied_by(self, said, link.phrase) or TOPICS[link.topic].kind == "name":
-                            gone.setdefault(link.topic, meant or values)
+                if said.negated or self._dislikes(said) or (over and values and among(values[0], known)):
+                    said_so = (*values, link.phrase.text if link.phrase else "")
+                    fits = alike if TOPICS[link.topic].kind == "activity" else among
+                    meant = tuple(one for one in known if fits(one, said_so))
+                    named = values or meant or link.phrase is None or _ANY.match(link.phrase.text)
+                    lasts = not meant or denied_by(self, said, link.phrase) or TOPICS[link.topic].kind == "name"
+                    if named and lasts:
+                        gone.setdefault(link.topic, meant or values)
                 elif not over:
                     if values and _INSTEAD.search(self.tree.text):
                         told.pop(link.topic, None)
@@ -113,25 +110,8 @@ class Reader:
             told["home"] = told.pop("origin")
         for topic in told:  # "I live in Paris. I don't live in Paris."
             told[topic] = without(told[topic], gone.get(topic, ()))
-            if denied_now := denied_beside(self, topic, told[topic]):
-                gone[topic] = (*gone.get(topic, ()), *denied_now)
         struck = [Fact(topic, values, gone=True) for topic, values in gone.items() if values or topic not in told]
         return [*(Fact(topic, values) for topic, values in told.items() if values), *struck]
-
-    def _denies(self, said: nlp.Statement, phrase: Phrase | None) -> bool:
-        """Return whether a negation covers a phrase.
-
-        It covers *Bonn* in *I live in Ulm, not in Bonn*, and in *I don't live in Bonn, but in Ulm*.
-        """
-        if self._dislikes(said):
-            return True
-        text, turn = self.tree.text, _TURN.search(self.tree.text)
-        if not _NOT.search(_OPENING_NO.sub("", text)):
-            return False
-        twice = turn and turn[1] and _NOT.search(_OPENING_NO.sub("", text[: turn.start()]))
-        if turn is None or twice or not said.negated or phrase is None:
-            return said.negated
-        return (phrase.text in text[turn.end() :]) == bool(turn[1])
 
     def asks(self) -> Fact | None:
         """Return the fact that the user asks for. It has values if the user wants these values confirmed."""
@@ -201,7 +181,7 @@ class Reader:
 
     def _listed(self, said: nlp.Statement) -> Iterator[Link]:
         subject, object, predicate = said.subject, said.object, predicate_of(said)
-        if subject.person == "I":
+        if subject.person == "I" and subject.text.lower() not in _MINE:
             yield from self._of_user(said)
         elif object.person == "I" and (found := SAYS.get(f"{predicate} me")):
             yield Link(found[0], subject, found[1])
@@ -226,6 +206,8 @@ class Reader:
     def noun(self, phrase: Phrase) -> str:
         """Return the topic of *my job*, *my sister's name*, *my favourite food*; empty for other phrases."""
         owner = phrase.owner
+        if phrase.text.lower() in _MINE:
+            return self.asked
         if phrase.text.lower() == "name":  # "name is Ada, the name's Ada"
             return NAME
         theirs = owner and owner.text.lower() in ("his", "her") and phrase.head == "name"

@@ -178,17 +178,19 @@ async def _mistaken(user: Acquaintance, memory: ontology.Memory | None, now: flo
 
 def _told(meaning: Meaning, user: Acquaintance, now: float, chance: random.Random, *, confirm: bool) -> Response:
     meaning = _without_idle(meaning, user)
-    if not meaning.facts and not meaning.free:
+    if not meaning.facts and not meaning.free and not meaning.gone:
         return Response(None, user)
     name = next((fact.values[0] for fact in meaning.facts if fact.topic == NAME and not fact.gone), None)
     before = user
-    news = learn(user.facts, meaning.facts, user.talk.latest if meaning.kind == "corrected" else ())
-    told = {**user.told, **{one.key: one for one in meaning.free}}
+    news = learn(user.facts, meaning.facts)
+    gone = {one.key for one in meaning.gone}
+    told = {key: one for key, one in user.told.items() if key not in gone} | {one.key: one for one in meaning.free}
     lost = [
         value for topic in news.changed for value in without(before.facts.get(topic, ()), news.facts.get(topic, ()))
     ]
-    older = tuple(one for one in user.talk.said if one not in meaning.said)
-    said = (*_unrelated(older, lost), *meaning.said)[-LONGEST:]  # "I live in Leeds" no longer holds
+    older = tuple(one for one in user.talk.said if one not in meaning.said and one.key not in gone)
+    fixed = meaning.free if meaning.gone else ()
+    said = (*_unrelated(older, lost), *fixed, *meaning.said)[-LONGEST:]  # "I live in Leeds" no longer holds
     talk = replace(_learning(user.talk, meaning, news, name), said=said)
     user = replace(user, facts=news.facts, talk=talk, told=told)
     if name is not None and user.who is None:
@@ -204,7 +206,8 @@ def _told(meaning: Meaning, user: Acquaintance, now: float, chance: random.Rando
         if after.talk.wants_out and name is not None:
             return _wants_out(after, now)
         if not meaning.facts:
-            return Response(None, after)
+            fixed = meaning.kind == "corrected" and meaning.free
+            return Response(say("corrected", known, fact=meaning.free[0].text) if fixed else None, after)
         if after.talk.trouble and not user.talk.warned:
             return Response(say("unsaved" if name is None else "unsaved_name", known), _with(after, warned=True))
         if name is not None:

@@ -176,10 +176,14 @@ async def respond(ctx: rs.RuleContext) -> None:
 
 @module.rule(when=rawio.output.changed.max_age(None).detached(), writes=talk, background=True)
 async def overhear(ctx: rs.RuleContext) -> rs.Resign | None:
-    """Note that the agent has spoken again after its question. The user's next words may not answer the question."""
-    if not any(letter.isalpha() for letter in ctx.payload(rawio.output.changed)):
+    """Note that the agent has spoken again after its question. The user's next words may not answer the question.
+
+    They may correct a fact that the agent's words mention.
+    """
+    words: str = ctx.payload(rawio.output.changed)
+    if not any(letter.isalpha() for letter in words):
         return rs.Resign("that was no word")  # for example, an emoji after an answer
-    ctx[talk] = ctx[talk].speaking()
+    ctx[talk] = ctx[talk].speaking(words)
     return None
 
 

@@ -91,6 +91,8 @@ class Talk:
     """Topics that the user's words have touched."""
     person: str = ""
     """The topic of the relative whom the user mentioned last."""
+    spoken: str = ""
+    """The agent's last words. The user may correct a fact that they mention: "no, Bremen"."""
     spoke: float = 0.0
     """Seconds from the beginning of the context to the user's last words."""
 
@@ -125,12 +127,12 @@ class Talk:
         counts = {"ignored": 0, "age": self.age + 1, "turns": self.turns + 1, "quiet": leave, "spoke": now}
         return replace(self, question=question, person=person or self.person, **counts, **noted)
 
-    def speaking(self) -> Talk:
+    def speaking(self, words: str = "") -> Talk:
         """Note that the agent has spoken: first the question itself, and in later calls something else."""
         question = self.question
-        if question is None or (question.heard and question.turns):
-            return self
-        return replace(self, question=replace(question, heard=True, spoken_over=question.heard))
+        if question is not None and not (question.heard and question.turns):
+            question = replace(question, heard=True, spoken_over=question.heard)
+        return replace(self, question=question, spoken=words)
 
     def waiting(self) -> Talk:
         """Give up the open question, because the user has not answered it."""

@@ -4,11 +4,12 @@ from __future__ import annotations
 
 import re
 from collections.abc import Iterable, Sequence
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from datetime import datetime
 
 from ravestate.errors import PlatformError
 from ravestate.language.encoder import Encoder
+from ravestate.language.lexicon import loaded_lexicon
 from ravestate.language.normal import plain
 from ravestate.modules import nlp
 from ravestate.modules.meta.nlp.tree import SUBJECTS, Tree, Word
@@ -131,13 +132,21 @@ def told_in(reader: Reader, before: Sequence[Told] = ()) -> tuple[list[Told], li
     return free, heard
 
 
+def retold_with(one: Told, right: str) -> Told:
+    """Return a statement with another object: *your sister Rosa lives in Ghent*, if the user had said Antwerp."""
+    right = right[:1].upper() + right[1:] if one.object[:1].isupper() else right
+    text = re.sub(rf"(?<!\w){re.escape(one.object)}(?!\w)", lambda _: right, one.text, count=1)
+    return replace(one, object=right, text=text)
+
+
 def recalled(reader: Reader, told: Iterable[Told], known: Facts) -> list[Told]:
     """Return the statements that answer the user's question: *what does Jonas play*, *who is getting married?*."""
     told, kind = list({one.text: one for one in told if one.text}.values()), reader.seen.question
     for said in reader.seen.statements:
         about = next((phrase for phrase in reversed(said.phrases) if phrase.preposition == "about"), None)
         if said.question and said.verb in _REMINDING and about and about.person == "other":
-            return [one for one in told if _covers(one, re.findall(r"\w+", about.text), known)][-3:]
+            words = [word for word in re.findall(r"\w+", about.text) if word.lower() not in _MINE]
+            return [one for one in told if _covers(one, words, known)][-3:]
     asked = next((said for said in reader.seen.statements if said.question and said.subject.person != "you"), None)
     mine = bool(reader.words & _MINE)
     if asked is not None and _is_general(reader, asked.subject.text) and not mine:
@@ -148,6 +157,12 @@ def recalled(reader: Reader, told: Iterable[Told], known: Facts) -> list[Told]:
         return []
     light = WORDS["light"] | WORDS["knowing"]
     words = [word.lemma for word in reader.tree.words if word.pos in _CONTENT and word.lemma not in light]
+    being_called = asked.triple.predicate in ("be called", "be named") or asked.subject.head == "name"
+    if being_called or (kind == nlp.QuestionWord.PERSON and asked.verb == "be"):
+        words = [word for word in words if word != "name"]
+        named = _naming([one for one in told if words and _covers(one, words, known)])
+        if named or being_called:
+            return named
     subjects = [] if asked.subject.person == "I" else [asked.subject.name or asked.subject.head]
     names = {part.lower() for one in told for part in f"{one.subject} {one.who}".split()} - {"i"}
     sure = mine or not names.isdisjoint(map(str.lower, words))
@@ -179,6 +194,22 @@ def recalled(reader: Reader, told: Iterable[Told], known: Facts) -> list[Told]:
     likeness = (rows[len(parts) :] @ rows[: len(parts)].T).max(axis=1)
     best = max(range(len(likeness)), key=likeness.__getitem__)
     return [fit[best]] if likeness[best] > LEAST else []
+
+
+def _naming(told: Sequence[Told]) -> list[Told]:
+    """Return the statements that name the people they are about, the last one for each subject.
+
+    Statements that say nothing but a name come before others: *my neighbour is Karl*, *my neighbour Karl plays the drums*.
+    """
+    only = [one for one in told if one.verb in ("be", "be called", "be named") and _has_name(one.object)]
+    beside = [one for one in told if _has_name(one.who)]
+    return list({one.subject.lower(): one for one in only or beside}.values())
+
+
+def _has_name(words: str) -> bool:
+    """Return whether one of some words is a name, also in lower case."""
+    lexicon = loaded_lexicon()
+    return any(word[:1].isupper() or (lexicon and lexicon.name(word) != word) for word in words.split())
 
 
 def _covers(one: Told, words: Iterable[str], known: Facts) -> bool:
@@ -247,7 +278,7 @@ def _happened(reader: Reader, said: nlp.Statement) -> bool:
 def _about(reader: Reader, said: nlp.Statement) -> str:
     """Return the subject of a statement about the user or somebody they know; empty for other statements."""
     subject, object = said.subject, said.object
-    if subject.person == "I":
+    if subject.person == "I" and subject.text.lower() not in ("mine", "ours"):
         mine = {"my", "our"} & set(object.text.lower().split()) and not _happened(reader, said)
         mine = mine or said.verb in ("name", "call")
         verb = reader.verb(said)

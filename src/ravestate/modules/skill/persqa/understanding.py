@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import re
-from collections.abc import Iterable
+from collections.abc import Iterable, Sequence
 from dataclasses import dataclass, replace
 from typing import Literal
 
@@ -13,8 +13,8 @@ from ravestate.language.normal import plain
 from ravestate.modules import nlp
 
 from . import kinds
-from .answers import answer, correction, may_stand_alone, opening, self_asked, spelled_out
-from .changes import may_correct, misheard
+from .answers import answer, may_stand_alone, opening, self_asked, spelled_out, without_opening
+from .contrast import Correction, corrected_in, denied_in
 from .kinds import likeness
 from .reading import Reader
 from .recollection import asks_for_words, asks_to_repeat
@@ -66,6 +66,8 @@ class Meaning:
     persqa learns the facts silently."""
     free: tuple[Told, ...] = ()
     """Free statements that the user makes, asks for, or wants forgotten."""
+    gone: tuple[Told, ...] = ()
+    """Free statements that the user denies or corrects."""
     touched: frozenset[str] = frozenset()
     """The topics that the user's words touch."""
     person: str = ""
@@ -91,6 +93,9 @@ def understand(
     words = tuple(one for one in seen.sentences if not one.rstrip().endswith("?")) if seen.question is None else ()
     meaning = hearing.meaning()
     noted = {"touched": touched, "person": person, "said": tuple(said), "words": words, "moved": hearing.moved}
+    if meaning.kind in ("told", "corrected", "nothing") and (denied := denied_in(said, (*hearing.told, *talk.said))):
+        kind = "told" if meaning.kind == "nothing" else meaning.kind
+        meaning = replace(meaning, kind=kind, gone=(*meaning.gone, *denied))
     busy = not meaning.facts and (seen.question is not None or len(seen.text.split()) > BRIEF)
     return replace(meaning, busy=busy, **noted)
 
@@ -152,6 +157,11 @@ class _Hearing:
         if self.waits and topic not in told and "nothing" not in self.acts and not self.reader.denies_all:
             facts = [*opening(self.text, topic, seen), *facts]
         facts = facts or self_asked(seen.text, seen)
+        pointed = not self.reader.words & _NAMING and all(fact.topic == NAME for fact in facts)  # "it's Leipzig"
+        fixed = Correction() if asks else self.correction([v for fact in facts for v in fact.values if not pointed])
+        facts = [] if fixed and pointed else facts
+        if fixed and (seen.contrasts or not facts):
+            return Meaning("corrected", (*facts, *fixed.facts), topic, self.leave, free=fixed.free, gone=fixed.gone)
         other = any(fact.topic == NAME and not self.is_name(fact.values) for fact in facts if not fact.gone)
         gone = any(fact.topic == NAME and fact.gone and self.is_name(fact.values) for fact in facts)
         denied = gone or self.denies_name()
@@ -175,8 +185,6 @@ class _Hearing:
     def otherwise(self, aside: bool) -> Meaning:
         """Return the meaning of an utterance that tells nothing in a sentence; `aside` if it asks, or says goodbye."""
         seen, topic, asks = self.seen, self.topic, self.seen.question is not None
-        if self.talk.correctable != NAME and seen.yesno.no and (corrected := self.corrected()):
-            return corrected
         if identity := self.identity():
             return identity
         if aside:
@@ -187,7 +195,7 @@ class _Hearing:
             return Meaning("told" if side else "nothing", tuple(side), topic, self.leave, aloud=False)
         if (relative := self.reader.without_name()) and not self.known.get(relative):
             return Meaning("mentioned", topic=relative)
-        return self.corrected() or (self.answered() if self.waits else None) or Meaning("nothing")
+        return (self.answered() if self.waits else None) or Meaning("nothing")
 
     def is_known(self, topic: str) -> bool:
         """Return whether the facts answer a question about a topic, at least with a fact of a related topic."""
@@ -202,20 +210,28 @@ class _Hearing:
 
     def denies_name(self) -> bool:
         """Return whether the user says that they are not the person as whom the agent knows them."""
-        names = "|".join(map(re.escape, self.known.get(NAME, ())))
-        return bool(names) and re.search(_DENIED.format(names), self.text, re.IGNORECASE) is not None
+        names = self.known.get(NAME, ())
+        unsaid = any(said.negated and said.verb == "say" for said in self.seen.statements)  # "I never said I was Ada"
+        denials = [
+            one for one in self.seen.statements if one.verb in _NAMES and (one.negated or (unsaid and one.hearsay))
+        ]
+        denials = [one for one in denials if one.triple.predicate != "not call" or one.subject.person != "I"]
+        pairs = [
+            (one, other)
+            for said in denials
+            for one, other in ((said.subject, said.object), (said.object, said.subject))
+        ]
+        return any(among(name.text, names) and other.text.lower() in _NAMED for name, other in pairs)
 
     def of_speakers(self) -> bool:
         """Return whether the utterance is about the user and the agent, not about others."""
         others = (said.subject for said in self.seen.statements if said.subject.person == "other")
         return all(other.text.lower() in ("", "it", "that", "this", "none") for other in others)
 
-    def corrected(self) -> Meaning | None:
-        """Return the correction of the fact that the user told last."""
-        topic, explicit = self.talk.correctable, self.pending is not None
-        said = (self.text, topic, self.talk.latest, self.seen)
-        facts = topic and may_correct(self.seen, topic) and (correction(*said, explicit=explicit) or misheard(*said))
-        return Meaning("corrected", tuple(facts), topic) if facts else None
+    def correction(self, read: Sequence[str]) -> Correction:
+        """Return the correction of a known fact, or of a free statement, unless it is among the values `read`."""
+        told = tuple({one.key: one for one in (*self.told, *self.talk.said)}.values())
+        return corrected_in(self.reader, self.text, self.talk, told, read, asked=self.pending is not None)
 
     def answered(self) -> Meaning | None:
         """Return the meaning of words that may answer the open question."""
@@ -229,7 +245,7 @@ class _Hearing:
             all(word.pos in ("ADV", "PART", "CCONJ", "PUNCT") for word in seen.tree.words) and topic != NAME
         )  # "and"
         facts = (not felt and not empty and answer(self.text, topic, seen)) or (
-            yesno.no and correction(self.text, topic, (), seen)
+            yesno.no and answer(without_opening(self.text), topic, seen)
         )  # "no, from Bremen"
         loose = TOPICS[topic].kind == "activity" or {word.pos for word in seen.tree.words} & {"ADV", "PART"}
         values = [value for fact in facts or () for value in fact.values]
@@ -271,7 +287,7 @@ class _Hearing:
             said.negated and said.verb == "be" and said.subject.person == "I" and said.object.owner
             for said in self.seen.statements
         )  # "I'm not Ben's mother"
-        if denied and not kin and self.known.get(NAME) and (denied.score > 0.6 or not self.corrected()):
+        if denied and not kin and self.known.get(NAME) and (denied.score > 0.6 or not self.correction(())):
             return Meaning("mistaken")
         other = any(
             said.subject.of("I") or (said.subject.person == "I" and isinstance(said.triple.object, nlp.QuestionWord))
@@ -371,10 +387,10 @@ _WHOSE = re.compile(r"\b(his|her|its) name\b", re.IGNORECASE)
 _FEMALE, _MALE = ("mother", "sister", "wife", "daughter"), ("father", "brother", "husband", "son")
 _OTHERS = {"his": _FEMALE, "her": _MALE, "its": (*_FEMALE, *_MALE, "friend", "partner", "child")}
 """A pronoun → topics of people whom it cannot mean."""
+_NAMING = frozenset(["i", "me", "name", "call", "called"])
+"""Words of which at least one stands beside a user's name, unless it is all that they say: *it's Ada*."""
 _CALM = frozenset(["astonishing", "boredom", "compliment", "insult"])
 """Feelings that do not stop the agent from asking its next question."""
-_DENIED = (
-    r"\b(?:i (?:am|was)|my name is|(?:this|that|it) is) (?:\w+ly )?(?:not|never) (?:called |named |the )?(?:{0})\b(?!['’]s)"
-    r"|\b(?:{0}) is not (?:me|my name)\b|\b(?:not|never) (?:call me|said i (?:am|was)) (?:{0})\b"
-)
-"""A pattern of words that deny the name ``{0}``: *I am not Ada*, *Ada is not my name*."""
+_NAMES = frozenset(["be", "call", "name"])
+_NAMED = frozenset(["i", "me", "my name", "it", "this", "that", "you", "they"])
+"""The other side of a denied name: *I am not Ada*, *Ada is not my name*, *don't call me Ada*."""

@@ -77,6 +77,23 @@ def alike(value: str, others: Iterable[str]) -> bool:
     return any(words and (words <= set(_key(other).split()) or words >= set(_key(other).split())) for other in others)
 
 
+def mentioned(text: str, known: Facts) -> str:
+    """Return the topic of the fact that words of the agent mention to the user; empty if they mention none, or several.
+
+    Example:
+        >>> mentioned("How do you like Ulm?", {"home": ("Ulm",), "age": ("36",)})
+        'home'
+    """
+    found = {
+        topic
+        for sentence in re.split(r"[.!?]\s+", text)
+        if re.search(r"\byour?s?\b", sentence, re.IGNORECASE)
+        for topic, values in known.items()
+        if any(re.search(rf"\b{re.escape(value)}\b", sentence) for value in values)
+    }
+    return found.pop() if len(found) == 1 else ""
+
+
 def joined(values: Sequence[str]) -> str:
     """Return the values as an enumeration.
 

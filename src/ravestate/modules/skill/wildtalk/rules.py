@@ -37,6 +37,7 @@ from .small_talk import (
     needs_comfort,
     notes_for,
     traces,
+    up_to_date,
 )
 from .transformers import TransformersBackend
 from .utterance import Utterance
@@ -267,13 +268,17 @@ async def go_on(ctx: rs.RuleContext) -> rs.Resign | None:
 async def comfort(ctx: rs.RuleContext) -> rs.Resign | None:
     """Console a sad user, perform, mend the talk, or answer well-known words, before any rule answers a fact in them."""
     seen = ctx.payload(nlp.analysis.changed)
-    if seen is None or not (
-        isinstance(ctx[model], ListeningBackend) or listener().performs(heard_in(ctx, seen.text, seen), State())
-    ):
+    if seen is None:
+        return rs.Resign("nothing was analysed")
+    # The checks take up to 0.2 s, so they run in a thread, on values that are read here.
+    heard, state, backend = heard_in(ctx, seen.text, seen), up_to_date(ctx, seen.text), ctx[model]
+    skill = await asyncio.to_thread(listener)
+    if not (isinstance(backend, ListeningBackend) or await asyncio.to_thread(skill.performs, heard, State())):
         return rs.Resign("a language model answers")
-    if not (claims(ctx, heard_in(ctx, seen.text, seen)) or needs_comfort(seen) or await is_known(seen)):
+    suits = await asyncio.to_thread(claims, heard, state) or await asyncio.to_thread(needs_comfort, seen)
+    if not (suits or await is_known(seen)):
         return rs.Resign("no known reply suits")
-    ctx[rawio.output] = await listen(ctx, heard_in(ctx, seen.text, seen))
+    ctx[rawio.output] = await listen(ctx, heard)
     return None
 
 

@@ -82,9 +82,9 @@ def may_claim(seen: nlp.Analysis | None) -> bool:
     return seen is not None and listener().claims(Heard(seen.text, seen))
 
 
-def claims(ctx: rs.RuleContext, heard: Heard) -> bool:
+def claims(heard: Heard, state: State) -> bool:
     """Return whether the utterance is a move in the talk: it asks for a performance, repairs the talk, or tells news."""
-    return listener().claims(heard, up_to_date(ctx, heard.text))
+    return listener().claims(heard, state)
 
 
 def may_be_known(seen: nlp.Analysis | None) -> bool:
@@ -134,7 +134,8 @@ def is_open(state: State) -> bool:
 async def follow_up(ctx: rs.RuleContext, heard: Heard) -> str:
     """Return the skill's reply to a turn in a game or to an answer; an empty string for other utterances."""
     skill = await asyncio.to_thread(listener)
-    return await listen(ctx, heard) if skill.continues(heard, up_to_date(ctx, heard.text)) else ""
+    continues = await asyncio.to_thread(skill.continues, heard, up_to_date(ctx, heard.text))
+    return await listen(ctx, heard) if continues else ""
 
 
 def up_to_date(ctx: rs.RuleContext, text: str) -> State:
