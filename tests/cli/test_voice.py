@@ -133,12 +133,8 @@ def test_talk_leaves_out_other_platforms(folder: Path, capsys: pytest.CaptureFix
 
 
 def test_ctrl_c_ends_a_conversation_cleanly(folder: Path) -> None:
-<<<<<<< HEAD
-    """A rule that waits in a thread holds the virtual clock back until the operating-system signal arrives."""
-=======
     """One rule waits for input in a thread, and so holds the virtual clock back. The end of the input ends the talk as
     well, so the test keeps the input open until the signal has cancelled this rule."""
->>>>>>> fixes
     (folder / "slow.py").write_text(
         STORYTELLER
         + """
