@@ -24,13 +24,13 @@ SHORT = 5
 """The number of letters below which an unknown word counts as a slip."""
 SUBTITLES = 1.6e9
 """The number of words behind the frequencies of `Lexicon`."""
-DULL = 7.5
+DULL = 7.0
 """The information, in nats, that a word must exceed to count. *Time* and *thing* have less, *sock* has 11."""
 UNKNOWN = 13.5
 """The most that a word counts, in nats. Names and unknown words may be slips, so they count no more."""
-LEAST = 2.5
+LEAST = 2.4
 """The least information of a highlight, in nats above `DULL`."""
-KNOWN_LEAST = 5.0
+KNOWN_LEAST = 4.0
 """The same for *the timer* and *my teeth*: such things are mostly mentioned in passing."""
 NUMBER = 3.0
 """The information of a number beside a noun, in nats above `DULL`: *fourteen years*."""

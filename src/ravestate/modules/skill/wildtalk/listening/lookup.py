@@ -21,7 +21,7 @@ from .tones import DARK, tone_of
 
 BRIEFLY = 5
 """The maximum number of words of a question that names nothing."""
-ALIKE = 0.5
+ALIKE = 0.47
 """The least probability that an entry of the bank suits. A reply that takes up what was said is better than a doubtful entry."""
 WHOLE = 30
 """The maximum number of words of an utterance that is compared with the bank as a whole."""
@@ -51,16 +51,16 @@ def near_in(
     texts = [asking] if asking else list(longer or sentences)
     if len(seen.tree.words) <= WHOLE:
         texts.append(seen.text)
-    mood = state.tone if state.tone in DARK or feeling is None else feeling.tone
+    own = tone_of(seen.text)
+    mood = own if own else state.tone if state.tone in DARK or feeling is None else feeling.tone
     bare = asking and not about(phrases, seen.tree, words_of(seen.tree, asking))  # "how do I start?"
     kind, persons = kind_of(asking) if asking else "", persons_in(seen.normal.text)
     grave = is_grave(seen.normal.text)
-    dark = tone_of(seen.text) == "sad"
     ranked: list[Found] = []
     for one in phrases.bank.similar(texts, seen.text, roughly=roughly):
         tone = one.moment.tone
         crossed = (tone == "glad" and mood in DARK) or (tone in DARK and mood == "glad")
-        crossed = crossed or ((grave or dark) and tone not in DARK and one.score < CLOSE)
+        crossed = crossed or (grave and tone not in DARK and one.score < CLOSE)
         examples = one.moment.examples
         crossed = crossed or (one.fit < 1 and kind != "" and kind not in map(kind_of, examples))
         crossed = crossed or bool(bare and one.score < CLOSE and len(asking.split()) <= BRIEFLY)
