@@ -284,7 +284,7 @@ _TIME = re.compile(
 
 _IS = re.compile(r"\b(?:am|is|are|was|were|be|been|being|belongs?|lies?|counts?|means?|called)\b", re.IGNORECASE)
 
-_ENDED = re.compile(r"\b(?:reigned|ruled|from (?:AD )?\d{2,4} (?:BC )?to (?:AD )?\d{2,4})\b")
+_ENDED = re.compile(r"\b(?:reigned|ruled|beheaded|abdicated|died|from (?:AD )?\d{2,4} (?:BC )?to (?:AD )?\d{2,4})\b")
 
 
 def _can_answer(question: Question, found: Found) -> bool:

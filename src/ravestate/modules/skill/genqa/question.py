@@ -77,7 +77,7 @@ class Parse:
     @property
     def text(self) -> str:
         """The text of the question, without the rest of the utterance."""
-        text = _OF_ANYBODY.sub("the human ", self.tree.phrase(self.asked).strip(" ?!.,;:"))
+        text = _OF_ANYBODY.sub("the human ", self.tree.phrase(self.asked).replace(" ,", ",").strip(" ?!.,;:"))
         return f"{text}?" if text and self.kind is not None else text
 
     @property
