@@ -152,7 +152,7 @@ def test_general_knowledge_is_said_without_a_source_which_the_thread_keeps(
         sim.say("How many bones are in your leg?")
         assert sim.said[-1].startswith("A human leg has 30 bones")
         assert "collection" not in sim.said[-1]
-        assert sim[genqa.thread][-1].source == "Ravestate's own collection"
+        assert sim.read(genqa.thread)[-1].source == "Ravestate's own collection"
 
 
 @pytest.mark.parametrize(
