@@ -125,7 +125,7 @@ def test_a_yes_no_question_is_answered_with_the_fact(
 def test_a_question_whose_pronoun_has_no_referent_gets_no_sure_answer(settings: dict[str, dict[str, Any]]) -> None:
     with simulate(genqa, talk, settings=settings) as sim:
         sim.say("Can they fly?")
-        assert sim.said[-1].startswith(("I'm not sure", "Perhaps"))
+        assert sim.said[-1].startswith(("I'm not sure", "Perhaps", "Hm."))
 
 
 def test_an_unsure_answer_begins_with_words_of_doubt(settings: dict[str, dict[str, Any]]) -> None:
@@ -143,6 +143,35 @@ def test_below_the_threshold_of_confidence_other_modules_answer(settings: dict[s
         sim.say("What is the capital of Peru?")
         assert sim.said == ["Hm."]
         assert "only 'The capital of Peru is Lima.'" in str(sim.explain("genqa:find"))
+
+
+def test_general_knowledge_is_said_without_a_source_which_the_thread_keeps(
+    settings: dict[str, dict[str, Any]],
+) -> None:
+    with simulate(genqa, talk, settings=settings) as sim:
+        sim.say("How many bones are in your leg?")
+        assert sim.said[-1].startswith("A human leg has 30 bones")
+        assert "collection" not in sim.said[-1]
+        assert sim.read(genqa.thread)[-1].source == "Ravestate's own collection"
+
+
+@pytest.mark.parametrize(
+    ("text", "answer"),
+    [
+        ("what does the retina even do", "senses light"),
+        ("Is a tomato a fruit or a vegetable, strictly speaking?", "a fruit for botanists"),
+        ("Do you know how many eyes a honeybee has", "Bees have five eyes"),
+        ("can you actually see the northern lights in september", "from September to March"),
+        ("who won the world cup in 1978", "Argentina"),
+        ("Can you sing a song?", "Hm."),
+    ],
+)
+def test_fillers_and_a_you_that_means_anybody_are_understood(
+    text: str, answer: str, settings: dict[str, dict[str, Any]]
+) -> None:
+    with simulate(genqa, talk, settings=settings) as sim:
+        sim.say(text)
+        assert answer in sim.said[-1]
 
 
 def test_without_documents_genqa_gives_no_answer(tmp_path: Path) -> None:

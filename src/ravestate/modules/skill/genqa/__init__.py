@@ -1,4 +1,4 @@
-"""Answers about the world from documents, always with their source."""
+"""Answers about the world from documents, with the source of each answer."""
 
 from __future__ import annotations
 

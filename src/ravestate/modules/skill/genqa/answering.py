@@ -211,6 +211,7 @@ class Answerer:
         total = sum(weight for _, weight, _ in weights)
         retrieved: list[tuple[float, Found]] = []
         stems_of = [set(stems) for stems in self._stems(*(f"{each.title} {each.text} {each.hints}" for each in found))]
+        counted = variants_of(question.counted.lower()) if question.counted else ()
         for each, have in zip(found, stems_of, strict=True):
             covered = (
                 sum(weight for forms, weight, _ in weights if has(have, forms)) / total
@@ -223,6 +224,7 @@ class Answerer:
                 (covered >= ENOUGH or not total or each in in_view)
                 and have.isdisjoint(avoided)
                 and _can_answer(question, each)
+                and (not counted or any(form in each.text.lower() for form in counted))
             )
             if fits and all(has(have, need) for need in question.needs):
                 retrieved.append((covered, each))
@@ -280,11 +282,22 @@ _TIME = re.compile(
 )
 
 
+_IS = re.compile(r"\b(?:am|is|are|was|were|be|been|being|belongs?|lies?|counts?|means?|called)\b", re.IGNORECASE)
+
+_ENDED = re.compile(r"\b(?:reigned|ruled|beheaded|abdicated|died|from (?:AD )?\d{2,4} (?:BC )?to (?:AD )?\d{2,4})\b")
+
+
 def _can_answer(question: Question, found: Found) -> bool:
     """Return whether a passage has the kind of thing that the question asks for, such as a number or a place."""
     asked = question.text.lower()
     if question.kind is QuestionWord.AMOUNT and ("how many " in asked or "how much " in asked):
         return _NUMBER.search(found.text) is not None
+    if question.kind is QuestionWord.YES_NO and asked.startswith(("is ", "are ", "was ", "were ")):
+        return _IS.search(found.text) is not None
+    if asked.startswith("who is ") and _ENDED.search(found.text):
+        return False
+    if asked.startswith(("what makes ", "what causes ", "what made ")):
+        return _CAUSE.search(found.text) is not None
     if "how old " in asked:
         return _AGE.search(found.text) is not None
     if question.kind is QuestionWord.TIME and not re.search(r"\d", found.text):

@@ -31,6 +31,8 @@ FINITE = ("VBZ", "VBP", "VBD", "MD")
 _NAMES = ("GPE", "LOC", "PERSON", "ORG", "FAC", "NORP", "WORK_OF_ART", "EVENT", "PRODUCT", "LANGUAGE")
 
 
+_OF_ANYBODY = re.compile(rf"\byour (?=(?:{'|'.join(sorted(words_of('body')))})\b)", re.IGNORECASE)
+"""The *your* of *how many bones are in your leg*, which means everybody's leg."""
 _ABOUT_DEEDS = (QuestionWord.REASON, QuestionWord.FORM)
 """Kinds of questions that ask nothing if their only words are a name: *how is Rome?*."""
 
@@ -56,6 +58,8 @@ class Question:
     """Whether only a sure answer counts, because the utterance might not be a question about the world."""
     follows: bool = False
     """Whether the question was completed from earlier questions. If so, names do not count for the confidence."""
+    counted: str = ""
+    """The noun after *how many*: a passage must have it in its own text; empty if there is none."""
     declined: str = ""
     """The reason why documents cannot answer the question; empty if they can."""
 
@@ -73,7 +77,7 @@ class Parse:
     @property
     def text(self) -> str:
         """The text of the question, without the rest of the utterance."""
-        text = self.tree.phrase(self.asked).strip(" ?!.,;:")
+        text = _OF_ANYBODY.sub("the human ", self.tree.phrase(self.asked).replace(" ,", ",").strip(" ?!.,;:"))
         return f"{text}?" if text and self.kind is not None else text
 
     @property
@@ -97,9 +101,28 @@ def parsed(tree: Tree, entities: Sequence[Entity], kind: QuestionWord | None) ->
     root = next((word for word in asked if word.head == word.index), None)
     if root is not None:
         asked = _alone(tree, root, asked)
+    asked = _without_fillers(asked)
     while asked and (asked[0].pos in ("PUNCT", "INTJ", "SPACE") or asked[0].low in ("so", "well", "but")):
         asked = asked[1:]
     return Parse(tree, tuple(entities), kind, tuple(asked))
+
+
+def _without_fillers(asked: list[Word]) -> list[Word]:
+    """Return the words without *actually*, *anyway*, *strictly speaking* and the like, which ask for nothing."""
+    low = [word.low for word in asked]
+    fillers = {
+        at + place
+        for phrase in words_of("filler_phrases")
+        for at in range(len(low))
+        if low[at : at + len(phrase.split("_"))] == phrase.split("_")
+        for place in range(len(phrase.split("_")))
+    }
+    left = [
+        word
+        for place, word in enumerate(asked)
+        if place not in fillers and not (word.pos == "ADV" and word.low in words_of("fillers"))
+    ]
+    return left if any(word.pos != "PUNCT" for word in left) else asked
 
 
 def _alone(tree: Tree, root: Word, asked: list[Word]) -> list[Word]:
@@ -154,8 +177,26 @@ def as_question(heard: str | Parse) -> Question:
     needs, avoids = _qualifiers(heard)
     given = frozenset(map(str.lower, named))
     return Question(
-        heard.text, words, kinds, given, tuple(needs), tuple(sorted(avoids)), heard.kind, doubtful, declined=reason
+        heard.text,
+        words,
+        kinds,
+        given,
+        tuple(needs),
+        tuple(sorted(avoids)),
+        heard.kind,
+        doubtful,
+        counted=_counted(heard),
+        declined=reason,
     )
+
+
+def _counted(heard: Parse) -> str:
+    """Return the noun after *how many*; empty if there is none, or if it is one of the `kinds`."""
+    many = next((word for word in heard.asked if word.low == "many"), None)
+    noun = heard.tree.head(many) if many is not None else None
+    if noun is None or noun.pos != "NOUN" or noun.low in words_of("kinds"):
+        return ""
+    return noun.text
 
 
 def is_name(seen: Parse, word: Word) -> bool:
@@ -193,6 +234,8 @@ def _declined(heard: Parse, said: Sequence[Word]) -> str:
 def _is_anybody(heard: Parse, word: Word) -> bool:
     """Return whether *you* or *I* stands for people in general: *how do you make ice cream*, *where must I pay*."""
     verb = heard.tree.head(word)
+    if word.low == "your" and verb.low in words_of("body"):
+        return heard.kind in (QuestionWord.AMOUNT, QuestionWord.REASON, QuestionWord.OBJECT)
     if word.dep not in ("nsubj", "nsubjpass") or verb.pos not in ("VERB", "AUX") or word.low not in ("you", "i"):
         return False
     helpers = heard.tree.children(verb, "aux")
@@ -200,6 +243,10 @@ def _is_anybody(heard: Parse, word: Word) -> bool:
         return False
     if verb.dep == "advcl":
         return True
+    if heard.kind is QuestionWord.YES_NO and word.low == "you" and any(helper.low == "can" for helper in helpers):
+        return verb.lemma in words_of("anybody") and any(
+            other.pos in ("NOUN", "PROPN") for other in heard.tree.subtree(verb)
+        )
     if heard.kind not in (QuestionWord.FORM, QuestionWord.PLACE, QuestionWord.TIME, QuestionWord.AMOUNT):
         return any(helper.low in ("must", "may") for helper in helpers)
     things = [other for other in heard.tree.subtree(verb) if other.pos in ("NOUN", "PROPN")]
@@ -216,7 +263,8 @@ def _qualifiers(heard: Parse) -> tuple[list[tuple[str, ...]], list[str]]:
     asked_ranks = {word.low for word in heard.asked if word.low in ranks}
     for word in heard.asked:
         if word.dep == "neg" or word.low in ("no", "never"):
-            if not decides:
+            before = tree.before(word)
+            if not decides and not (before is not None and before.pos == "CCONJ"):  # "why 42 and not 41?"
                 needs.append(("not", "no", "never", "none", "without"))
         elif word.low in ("before", "after") and any(
             other.tag not in ("CD", "WDT") for other in tree.children(word, "pobj")

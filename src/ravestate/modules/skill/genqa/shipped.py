@@ -15,9 +15,10 @@ from .index import Index, IndexedFile
 SHIPPED = "ravestate:collection"
 """The collection's name among the files of an index."""
 
-_OWN = "Ravestate's own collection"
+OWN = "Ravestate's own collection"
+"""The source of the sentences that were written for Ravestate."""
 _FACTBOOK = "world-factbook.jsonl.gz"
-_GENERAL = ("general.yaml", "people.yaml")
+_GENERAL = ("general.yaml", "people.yaml", "nature.yaml", "culture.yaml")
 
 
 def bring_up(index: Index, *, wanted: bool = True) -> bool:
@@ -56,4 +57,4 @@ def documents(factbook: bytes, *general: bytes) -> Iterator[Document]:
     for file in general:
         said: dict[str, list[str]] = yaml.load(file, loader)  # the loader is safe, and the file is our own
         for title, sentences in said.items():
-            yield Document(title, _OWN, [Passage(sentence) for sentence in sentences])
+            yield Document(title, OWN, [Passage(sentence) for sentence in sentences])

@@ -14,6 +14,7 @@ from .answering import Answer
 from .lexicon import words_of
 from .names import Settings, found
 from .names import module as genqa
+from .shipped import OWN
 
 TOLD = 3
 """The maximum number of passages in the prompt."""
@@ -35,6 +36,8 @@ def intent_of(answer: Answer, text: str, settings: Settings) -> verbaliser.Inten
     if not answer.source:
         return verbaliser.Intent("reckoned", {"answer": text}, package=__package__)
     name = "sure" if answer.confidence >= settings.sure else "unsure"
+    if answer.source == OWN:  # general knowledge needs no source
+        return verbaliser.Intent(f"{name}_known", {"answer": text}, package=__package__)
     return verbaliser.Intent(name, {"answer": text, "source": answer.source}, package=__package__)
 
 
