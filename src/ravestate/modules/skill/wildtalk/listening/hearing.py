@@ -371,6 +371,8 @@ def feeling_of(phrases: Material, seen: Analysis, sentence: str, tone: str) -> t
     known = [one for one in known if not re.search(rf'["“][^"”]*{re.escape(one.text.strip(".!?"))}', seen.text)]
     if may_be_dark(seen.text):  # "that's Portugal gone!" is no good news
         known = [one for one in known if phrases.feelings[one.name].tone != "glad"]
+    elif tone_of(seen.text) == "funny":  # "I fell asleep on the tram, and now I am at a cemetery"
+        known = [one for one in known if phrases.feelings[one.name].tone != "sad"]
     but = any(word.low == "but" for word in seen.tree.words)  # "you are sweet, but you don't listen"
     matches = [one for one in known if one.name in _SAD or not but]
     if not matches:
