@@ -35,6 +35,8 @@ ALIKE: Mapping[str, tuple[str, ...]] = {
     "say_what": ("say_what",),
 }
 """The classes whose answers in an area serve a kind, the best first. By default, only its own."""
+WORDING = word_set("repeat shorter say_word")
+"""Kinds that ask for words. Beside other sentences, *again* asks for none."""
 OPEN = word_set("recommend should worth favourite would_you fact choose predict permit explain")
 """Kinds that are a choice if options are named."""
 EXACT = word_set("fact why choose measure would_you about_you")
@@ -139,6 +141,10 @@ def asked_in(
             (*state.options, False),
         )  # "I can't choose between tea and milk. Which would you take?"
     compared = any(word.tag in ("JJR", "RBR") and word.low not in _LIKED for word in words)
+    if kind == "choose" and not options and [word.low for word in words if word.pos != "PUNCT"][-2:] == ["or", "not"]:
+        kind = "should"  # "can I do that or not?"
+    if kind in WORDING and len(seen.sentences) > 1 and not asking:
+        return None  # "short night. two hours. again"
     if kind == "choose" and compared and words and words[0].low in QUESTION_WORDS:
         kind = "fact"  # "which is heavier, gold or lead?"
     plainly = asking and words and (asking.endswith("?") or words[0].low in {*QUESTION_WORDS, *AUXILIARIES})

@@ -28,7 +28,7 @@ from .lookup import ALIKE, is_dark, near_in
 from .material import Material
 from .moment import Moment
 from .roles import Roles, has_verb, is_request, roles_of, turned
-from .state import LASTING, State
+from .state import State
 from .taking_up import Taken, taken_from
 from .tones import may_be_dark, tone_of
 from .tongue import is_number, tongue_of
@@ -171,9 +171,7 @@ def _understand(found: Hearing, phrases: Material, heard: Heard, seen: Analysis,
     found.near = near_in(phrases, seen, asking, state, feeling)
     dark = is_dark(seen, found.near) or found.sad
     found.tone = "sad" if dark else _tone(phrases, seen, found.moves, feeling)
-    grieving = state.tone == "sad" and (state.turns > LASTING or not _SAD.isdisjoint(seen.feelings))
-    quiet = state.tone == "sad" and found.tone in ("", "glad", "funny")
-    found.mood = "quiet" if quiet and not grieving else "sad" if grieving else found.tone
+    found.mood = "quiet" if state.tone == "sad" and found.tone in ("", "glad", "funny") else found.tone
     nearest = found.near[0] if found.near else Found(0.0, 0.0, Moment("", {}), "")
     found.follow_up = follow_up_in(
         phrases.bank, state, seen, asking, nearest if nearest.fit >= ALIKE else None, dark=dark
@@ -213,7 +211,7 @@ def _understand(found: Hearing, phrases: Material, heard: Heard, seen: Analysis,
         "long": size >= LONG,
         "short": size <= SHORT,
         "teased": "insult" in seen.acts and is_playful(seen.text),
-        "leaving": not asking and is_leaving(seen.text),
+        "leaving": not asking and (is_leaving(seen.text) or _leaves(seen)),
         "verb": verb and seen.question is None,
         "acting": bool(seen.acts.keys() - {"contradiction"}),
         "felt": feeling is not None,
@@ -254,6 +252,12 @@ def _tone(phrases: Material, seen: Analysis, moves: Sequence[str], feeling: Mome
     if feeling is not None and feeling.tone:
         return feeling.tone
     return tone_of(seen.text) or ("glad" if moves == ("rejoice",) and not may_be_dark(seen.text) else "")
+
+
+def _leaves(seen: Analysis) -> bool:
+    """Return whether the last of several sentences is a farewell: *that helped a bit. she's waking up, gotta run*."""
+    match = seen.acts.get("farewell")
+    return match is not None and len(seen.sentences) > 1 and match.score >= MEANT and match.text == seen.sentences[-1]
 
 
 def likely(phrases: Material, seen: Analysis) -> tuple[str, ...]:

@@ -4,8 +4,9 @@ from __future__ import annotations
 
 from ravestate.language.matcher import bundled_matcher
 
-LEAST = {"sad": 0.7, "angry": 0.75, "glad": 0.75, "funny": 0.65, "tired": 0.75}
-"""The least confidence in a tone. At this confidence, 82 to 95 % of unseen sentences have the tone."""
+LEAST = {"sad": 0.7, "angry": 0.8, "glad": 0.75, "funny": 0.6, "tired": 0.75}
+"""The least confidence in a tone. It is high, because most utterances of strangers have no clear tone: of 200 (tones_rows.tsv),
+those above it were funny in 83 %, glad in 75 % and sad in 58 % of cases. Replies to each tone are chosen accordingly mild."""
 DARK = ("sad", "angry", "tired")
 DOUBT = 0.4
 """The confidence in a dark tone at which an utterance is probably no good news."""
