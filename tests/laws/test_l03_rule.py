@@ -10,7 +10,7 @@ from laws.short import hearer, output, writer
 from ravestate.testing import Simulation, simulate
 
 
-def test_a_declared_rule_is_still_the_function_with_its_name() -> None:
+def test_a_declared_rule_can_still_be_called_as_a_function() -> None:
     m = rs.Module("m")
     go, mood, done = m.signal("go"), m.slot("mood", ""), m.signal("done")
 
@@ -46,7 +46,10 @@ def test_a_condition_is_a_boolean_combination(play: Any) -> None:
 
 
 def refused(m: rs.Module, go: rs.Signal[Any]) -> tuple[Simulation, str]:
-    """Return the simulation, and the error with which a forbidden access ends the run of `m:meddle` (L18: Error)."""
+    """Check that a forbidden access ends the run of `m:meddle` with an error, and that `rs.error` reports it (L18).
+
+    Return the simulation and the error's message.
+    """
     errors: list[rs.RuleFailure] = []
     hearer(m, "hear_error", rs.error, rs.error, errors)
     with simulate(m) as sim:

@@ -1,4 +1,5 @@
-"""The shape of a sentence: the persons that it mentions, and whether it asks. Only pronouns and question words count.
+"""The shape of a sentence: the persons that it mentions, and whether it asks. Only pronouns, question words and
+auxiliary verbs count.
 
 The sentences *what are my hobbies* and *what are your hobbies* have almost the same vector and spelling. Their shapes
 differ.
@@ -27,7 +28,8 @@ _AUXILIARIES = word_set("do does did am is are was were have has had can could w
 def shape(text: str) -> tuple[bool, bool, bool, int]:
     """Return features of a plain text: whether it mentions the agent, the user, others; and its word order.
 
-    The word order is 2 if there is a question word, 1 if a verb precedes its subject, or else 0.
+    The first question word or auxiliary verb decides the word order: 2 for a question word, 1 for a verb without a
+    pronoun directly before it, or else 0.
 
     Example:
         >>> shape("what are my hobbies"), shape("you have a father")
@@ -51,7 +53,10 @@ def opens_question(text: str) -> bool:
 
 
 def likeness(texts: NDArray[np.int8], others: NDArray[np.int8]) -> NDArray[np.float32]:
-    """Return the weighted share of equal features: rows for `texts` (n, 4), columns for `others` (m, 4)."""
+    """Compare the shapes of n texts, (n, 4), with the shapes of m others, (m, 4).
+
+    Return an array (n, m): for each pair, the sum of the weights of the features that are equal.
+    """
     import numpy as np
 
     likeness = np.zeros((len(texts), len(others)), dtype=np.float32)

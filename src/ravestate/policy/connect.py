@@ -62,7 +62,10 @@ def find_kin(rules: Iterable[RulePlan], causes: Causes) -> None:
 
 
 def find_unrivalled(rules: Iterable[RulePlan]) -> None:
-    """Mark the clauses that always go before all other writers of their slots. A cooldown may change the order."""
+    """Mark the clauses that always go before all other writers of their slots.
+
+    If a writer of a slot has a cooldown, its utility changes over time. So no clause that writes this slot is marked.
+    """
     best: dict[int, Clause] = {}
     changing: set[int] = set()
     for rule in rules:
@@ -82,9 +85,12 @@ def find_conflict_sets(signals: Sequence[SignalPlan], causes: Causes) -> None:
     """Set the conflict sets of each signal: the clauses that compete for each of its spikes, in a fixed order.
 
     One spike of the signal makes such a clause ready. The clauses write the same slots, and their order never changes.
-    Only the first clause can get consent, unless it resigns or fails. Until it has done so, the engine makes no
-    activation of the other clauses (``engine/conflict_sets.py``). A clause takes no part if its effects may help a rule
-    that writes a slot. Other activations may have to wait for such effects (L16), so this clause needs an activation.
+    So the first clause goes before the others. Only if its run resigns or fails does the engine need an activation of
+    the next clause (``engine/conflict_sets.py``).
+
+    A signal is *helpful* if it leads to a rule that writes a slot, or to a slot predicate (`Causes.helpful`). A clause
+    belongs to no conflict set if its rule may raise a helpful signal. Other activations may have to wait for that
+    signal (L16). They can only wait for an activation, so such a clause always gets one.
     """
     helpful = causes.helpful
     for signal in signals:
@@ -102,9 +108,9 @@ def find_conflict_sets(signals: Sequence[SignalPlan], causes: Causes) -> None:
 def find_halves(signals: Sequence[SignalPlan], causes: Causes) -> None:
     """Set the halves of each signal, and its `others`: the listeners that are in no conflict set and in no half.
 
-    A half collects the needs for one signal, from clauses that have two needs. The first spike only changes which need
-    such a clause lacks, so a table of spikes is enough (``engine/halves.py``). As for a conflict set, none of the
-    rule's effects may help a rule that writes a slot.
+    A half collects the needs for one signal, from clauses that have two needs. A clause with only the first of its two
+    spikes cannot run yet. So the engine keeps the first spikes in a table, without activations (``engine/halves.py``).
+    A clause belongs to no half if its rule may raise a helpful signal; `find_conflict_sets` explains the reason.
     """
     helpful = causes.helpful
     best = _best_writers(causes)
@@ -158,7 +164,7 @@ def _is_plain(clause: Clause) -> bool:
 
 
 def _likeness(need: Need, causes: Causes) -> Any:
-    """Return a key. Needs for one signal that have equal keys get the same decisions about a first spike."""
+    """Return a key. If two needs for one signal have equal keys, the engine treats a first spike alike for both."""
     rule = need.clause.rule
     if need.predicates:
         return need

@@ -11,7 +11,8 @@ from .names import filled, late, lost, module, promised, waiting
 ENOUGH = 5.0
 """The minimum number of seconds between two fillers."""
 REMEMBERED = 120.0
-"""An answer that comes more than this many seconds after its question counts as an answer to the newest words."""
+"""For this many seconds, the module remembers which words of the user an output answers. A later output counts as an
+answer to the user's latest words."""
 
 
 @module.rule(
@@ -24,7 +25,7 @@ REMEMBERED = 120.0
     background=True,
 )
 async def notice_no_answer(ctx: rs.RuleContext) -> None:
-    """Raise `impatient` when a rule has run for a while without output. (`idle` raises it when rules wait.)"""
+    """Raise `impatient` when a rule has run for a while without output. (`idle` raises the signal when rules wait.)"""
     await ctx.sleep(ctx.settings.unanswered_after)
     last = ctx[filled]
     if last is not None and ctx.now - last < ENOUGH:
@@ -56,7 +57,7 @@ async def fill_the_pause(ctx: rs.RuleContext) -> rs.Resign | None:
 
 @module.rule(
     when=rawio.input.changed.max_age(REMEMBERED)
-    & rawio.output.changed.max_age(None)  # the user's words and their answer
+    & rawio.output.changed.max_age(None)  # the user's words, and the agent's answer to them
     | rawio.output.changed.max_age(None)
     | rawio.input.changed.detached()
     | rawio.speaking.true.detached(),
