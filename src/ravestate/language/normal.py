@@ -123,11 +123,15 @@ _FIRST = frozenset(entry.partition(" ")[0] for entry in WRITTEN if " " in entry)
 
 _ANY_SUBJECT = "(?:i|you|he|she|it|we|they)"
 _ANY_AUX = f"(?:{'|'.join(sorted(_AUX, reverse=True))})"
+_DONE = (
+    "(?:sports|exercises|dishes|chores|things|drugs|tricks|crafts|puzzles|crosswords|sums|always|us|as|this|his|yes)"
+)
+"""Words after *do* that make it an order or a statement; before other plurals, it asks: *do dogs dream*."""
 _ASKS = re.compile(
     rf"""(?:(?:i'm|i|fine|good)\ (?:.*\ )?)?and\ you$ | (?:what|how)\ about\b | (?:what|who|where|when|why|how)'s\b |
     (?:what|who|why|which|whose)\b(?!\ (?:{_ANY_SUBJECT}|an?)\b) |
     (?:where|when|how|whom)(?:\ (?!{_ANY_SUBJECT}\b)\S+){{0,2}}\ {_ANY_AUX}(?!\S) |
-    (?:do|don't|have|may|might)\ (?!it\b){_ANY_SUBJECT}\b | (?!(?:do|don't|have|may|might)\b){_ANY_AUX}\ (?!not\b)""",
+    (?:do|don't|have|may|might)\ (?!it\b){_ANY_SUBJECT}\b | do\ (?!{_DONE}\b)(?:[a-z]{{2,}}s|people|children|fish|mice)\ [a-z]+ | (?!(?:do|don't|have|may|might)\b){_ANY_AUX}\ (?!not\b)""",
     re.VERBOSE,
 )
 """The beginning of a question. *Do it* and *have a nice day* are not questions."""
