@@ -254,10 +254,10 @@ def rule_of(names: Names, spec: RuleOf, name: str) -> rs.Rule[Any, Any]:
     """Declare a rule."""
 
     async def coroutine(ctx: Any) -> None:
-        raise NotImplementedError  # a bare engine does not call rule functions
+        raise AssertionError("a bare engine does not call rule functions")
 
     def plain(ctx: Any) -> None:
-        raise NotImplementedError
+        raise AssertionError("a bare engine does not call rule functions")
 
     declare = names.home(name).rule(
         when=names.condition(spec.when),

@@ -46,8 +46,8 @@ _ASIDE = ("intj", "parataxis", "preconj")
 _ENDS = (".", "!", "?", ",", ";", ":", "-", "…", "...")
 _OPINING = word_set("think guess suppose believe")
 """Verbs that only wrap a statement of the user's own: *I think I will try*."""
-_DENYING = word_set("not n't never nobody none nothing no cannot hardly barely")
-_IMAGINING = word_set("could should would might may maybe perhaps")
+DENYING = word_set("not n't never nobody none nothing no cannot hardly barely")
+IMAGINING = word_set("could should would might may maybe perhaps")
 """Words of a statement about something that may never happen."""
 _BARE = word_set("be have do can will would want know like mean")
 """Verbs that say nothing without the words after them."""
@@ -219,13 +219,13 @@ def _tense(tree: Tree, verb: Word, subjects: Sequence[Word]) -> str:
     chain = list(_chain(tree, verb))
     helpers = {word.low for word in tree.children(verb, "aux", "auxpass")}
     beside = {word.low for word in tree.children(verb)}
-    if any(word.low in _DENYING for word in (*tree.children(verb), *subjects)):
+    if any(word.low in DENYING for word in (*tree.children(verb), *subjects)):
         return "not"
     if verb.lemma == "use" and len(chain) > 1 and chain[1].tag == "VB":
         return "once"
     if verb.tag == "VBD" and _USUALLY & beside:
         return "once"
-    if _IMAGINING & beside:
+    if IMAGINING & beside:
         return "might"
     moving = verb.lemma in _MOVING or (verb.lemma == "go" and len(chain) > 1)
     wishing = verb.lemma in _WISHING and verb.tag != "VBD" and len(chain) > 1

@@ -19,7 +19,7 @@ from ravestate.modules.meta.nlp.analysis import ADVICE, Analysis
 from ravestate.modules.meta.nlp.question_word import QuestionWord
 from ravestate.modules.meta.nlp.statement import Statement
 
-from .asked import Asked, asked_in, options_between
+from .asked import WORDING, Asked, asked_in, options_between
 from .asking import FEW_WORDS, SHORT, asking_sentence, kind_of
 from .bank import CLOSE, Found
 from .following import follow_up_in, rest_of
@@ -170,7 +170,7 @@ def _understand(found: Hearing, phrases: Material, heard: Heard, seen: Analysis,
     found.sad = feeling is not None and feeling.tone == "sad"
     found.near = near_in(phrases, seen, asking, state, feeling)
     dark = is_dark(seen, found.near) or found.sad
-    found.tone = "sad" if dark else _tone(phrases, seen, found.moves, feeling)
+    found.tone = "sad" if dark else _tone(seen, found.moves, feeling)
     found.mood = "quiet" if state.tone == "sad" and found.tone in ("", "glad", "funny") else found.tone
     nearest = found.near[0] if found.near else Found(0.0, 0.0, Moment("", {}), "")
     found.follow_up = follow_up_in(
@@ -225,7 +225,7 @@ def _understand(found: Hearing, phrases: Material, heard: Heard, seen: Analysis,
         "asked": found.asked is not None,
         "advised": seen.advised,
         "again": found.asked is not None and bool({"another", "meant"} & seen.asks.keys()) and state.asked is not None,
-        "wording": found.asked is not None and found.asked.kind in ("repeat", "shorter", "say_word"),
+        "wording": found.asked is not None and found.asked.kind in WORDING,
         "guessed": state.moment == "guess" and not asking and "contradiction" not in seen.acts,
         found.asked.kind if found.asked else "": True,
         "echoed": found.taken is not None,
@@ -247,7 +247,7 @@ def _understand(found: Hearing, phrases: Material, heard: Heard, seen: Analysis,
     )
 
 
-def _tone(phrases: Material, seen: Analysis, moves: Sequence[str], feeling: Moment | None) -> str:
+def _tone(seen: Analysis, moves: Sequence[str], feeling: Moment | None) -> str:
     """Return the tone of an utterance that is not grave."""
     if feeling is not None and feeling.tone:
         return feeling.tone

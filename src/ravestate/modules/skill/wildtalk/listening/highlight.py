@@ -16,7 +16,7 @@ from ravestate.language.lexicon import Lexicon, loaded_lexicon
 from ravestate.modules.meta.nlp.analysis import Analysis
 from ravestate.modules.meta.nlp.tree import SUBJECTS, Tree, Word
 
-from .echo import echo
+from .echo import DENYING, IMAGINING, echo
 
 LONGEST = 8
 """The maximum number of words of a highlight."""
@@ -40,10 +40,11 @@ word that was said before is none."""
 
 _EMPTY = word_set(
     "thing things stuff lot lots bit kind sort way time times day days one ones something anything nothing everything"
-    " someone somebody anyone anybody everyone everybody nobody guy guys people today tomorrow yesterday tonight morning weekend weekends"
-    " afternoon evening night week weeks month months year years moment minute minutes hour hours monday tuesday wednesday"
+    " someone somebody anyone anybody everyone everybody nobody guy guys people today tomorrow yesterday tonight morning"
+    " weekend weekends afternoon evening night week weeks month months year years moment minute minutes hour hours monday tuesday wednesday"
     " thursday friday saturday sunday january february march april june july august september october november december"
-    " easter christmas row mate bro dude dear robot bot buddy pal goodnight bye goodbye hello hi name names rest end part side place point case fact reason idea matter lol haha ok okay"
+    " easter christmas row mate bro dude dear robot bot buddy pal goodnight bye goodbye hello hi name names rest"
+    " end part side place point case fact reason idea matter lol haha ok okay"
 )
 """Nouns that name nothing, or only a time."""
 _LEFT = ("det", "amod", "compound", "nummod", "poss", "case", "nmod", "quantmod", "predet", "advmod")
@@ -57,8 +58,8 @@ _DROPPED = word_set("some any such whatever")
 """Determiners that do not stand well at the beginning of an exclamation."""
 _PLACING = word_set("in on under behind off onto into over without inside across around through between among outside")
 """Prepositions with which a highlight may begin."""
-_DENYING = word_set("not n't never no nobody hardly without")
-_IMAGINING = word_set("if unless whether would could might should")
+_DENYING = DENYING | word_set("without")
+_IMAGINING = IMAGINING | word_set("if unless whether")
 
 
 @dataclass(frozen=True, slots=True)

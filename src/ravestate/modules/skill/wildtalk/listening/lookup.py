@@ -43,13 +43,13 @@ def near_in(
 ) -> list[Found]:
     """Return the entries of the bank that resemble an utterance or one of its sentences, the most suitable first.
 
-    If the user asks something, only the question and the whole utterance count. Nobody is cheered up in a sad talk. With
+    If the user asks something, only the question counts. Nobody is cheered up in a sad talk. With
     `roughly`, the probabilities are estimated without the cross-encoder.
     """
     sentences = seen.sentences[:6]
     longer = [sentence for sentence in sentences if len(sentence.split()) >= BESIDE]
     texts = [asking] if asking else list(longer or sentences)
-    if len(seen.tree.words) <= WHOLE:
+    if len(seen.tree.words) <= WHOLE and not (asking and len(seen.sentences) > 1):  # "haha! do dogs dream" asks
         texts.append(seen.text)
     own = tone_of(seen.text)
     mood = own if own else state.tone if state.tone in DARK or feeling is None else feeling.tone
