@@ -104,8 +104,9 @@ def _kind(tree: Tree, words: Sequence[Word], clauses: Sequence[Clause]) -> Quest
         return kind
     if not words or asked or (stated and "any" in low):  # as in "you know any songs"
         return QuestionWord.YES_NO if low or asked else None
-    denied = low[0] in AUXILIARIES and low[1:2] == ["n't"] and words[2:3] and words[2].pos in _NOMINAL
-    if (likely and denied) or _lacks_auxiliary(words, clauses):
+    after = words[2:] if low[1:2] == ["n't"] else words[1:]
+    inverted = low[0] in AUXILIARIES and len(after) > 1 and after[0].pos in _NOMINAL  # as in "do dogs dream"
+    if (likely and inverted) or _lacks_auxiliary(words, clauses):
         return QuestionWord.YES_NO
     if low[-2:] == ["or", "not"] and not {"if", "whether"} & set(low):
         return QuestionWord.YES_NO

@@ -112,7 +112,8 @@ def wish_in(shows: Mapping[str, Any], seen: Analysis, state: State, acts: Sequen
     low = seen.text.lower()
     if _GUESSER.search(low) or _HOLDER.search(low):
         return Wish("animal" if _GUESSER.search(low) else "holder")
-    kind = next(filter(None, (_named(shows, sentence) for sentence in reversed(seen.sentences))), "")
+    asked = seen.sentences if seen.closing is None or not seen.closing.remarks else (seen.closing.text,)
+    kind = next(filter(None, (_named(shows, sentence) for sentence in reversed(asked))), "")
     offered = state.said[-1] if state.said and _OFFERED.search(state.said[-1]) else ""
     accepted = offered and kinds_in(shows, offered) and not seen.yesno.no
     if accepted and not kind and len(low.split()) <= LONGEST:
