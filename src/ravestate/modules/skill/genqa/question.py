@@ -101,28 +101,9 @@ def parsed(tree: Tree, entities: Sequence[Entity], kind: QuestionWord | None) ->
     root = next((word for word in asked if word.head == word.index), None)
     if root is not None:
         asked = _alone(tree, root, asked)
-    asked = _without_fillers(asked)
     while asked and (asked[0].pos in ("PUNCT", "INTJ", "SPACE") or asked[0].low in ("so", "well", "but")):
         asked = asked[1:]
     return Parse(tree, tuple(entities), kind, tuple(asked))
-
-
-def _without_fillers(asked: list[Word]) -> list[Word]:
-    """Return the words without *actually*, *anyway*, *strictly speaking* and the like, which ask for nothing."""
-    low = [word.low for word in asked]
-    fillers = {
-        at + place
-        for phrase in words_of("filler_phrases")
-        for at in range(len(low))
-        if low[at : at + len(phrase.split("_"))] == phrase.split("_")
-        for place in range(len(phrase.split("_")))
-    }
-    left = [
-        word
-        for place, word in enumerate(asked)
-        if place not in fillers and not (word.pos == "ADV" and word.low in words_of("fillers"))
-    ]
-    return left if any(word.pos != "PUNCT" for word in left) else asked
 
 
 def _alone(tree: Tree, root: Word, asked: list[Word]) -> list[Word]:
