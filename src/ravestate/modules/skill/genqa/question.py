@@ -254,8 +254,7 @@ def _qualifiers(heard: Parse) -> tuple[list[tuple[str, ...]], list[str]]:
         elif word.low in words_of("excluding"):
             needs.append(tuple(sorted(words_of("excluding"))))
         elif _is_superlative(tree, word) or word.low in ranks:
-            listed = ("five", "ten") if word.low in words_of("ranks") and _picks_largest(tree, word) else ()
-            needs.append((*variants_of(word.text), *listed))
+            needs.append(variants_of(word.text))
             picked = [other.text for other in _picked(tree, word) if other in heard.asked]
             needs += [variants_of(other) for other in picked]
             if not asked_ranks:
@@ -280,19 +279,11 @@ def _is_superlative(tree: Tree, word: Word) -> bool:
     return word.tag in ("JJS", "RBS") and not quantity
 
 
-def _picks_largest(tree: Tree, rank: Word) -> bool:
-    """Return whether a superlative follows a rank, as in *third longest*. A list of the longest then also has the answer."""
-    after = tree.after(rank)
-    return after is not None and after.tag in ("JJS", "RBS")
-
-
 def _picked(tree: Tree, rank: Word) -> Iterator[Word]:
     """Yield the content words of the phrase in which a rank picks one of many: *second longest river in Africa*."""
     head = tree.head(rank)
-    if head.pos not in ("NOUN", "PROPN", "ADJ"):
+    if head.pos not in ("NOUN", "PROPN"):
         return
-    if head.pos == "ADJ" and tree.head(head).pos in ("NOUN", "PROPN"):
-        head = tree.head(head)
     for word in tree.subtree(head):
         if _means(word) and word != rank and word.low not in words_of("kinds") | words_of("people") | words_of("ranks"):
             yield word
