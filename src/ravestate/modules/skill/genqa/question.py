@@ -25,7 +25,8 @@ REMEMBERED = 64
 """The number of parses that are kept."""
 THE_TWO = frozenset(["i", "me", "my", "mine", "myself", "you", "your", "yours", "yourself", "u", "ur"])
 """The pronouns for the user and the agent."""
-_OTHERS = frozenset(["it", "its", "they", "them", "their", "he", "him", "his", "she", "her"])
+SEXES = {"he": "he", "him": "he", "his": "he", "she": "she", "her": "she", "hers": "she"}
+PRONOUNS = frozenset([*SEXES, "it", "its", "they", "them", "their", "there", "this", "that"])
 WH = ("WP", "WP$", "WDT", "WRB")
 FINITE = ("VBZ", "VBP", "VBD", "MD")
 _NAMES = ("GPE", "LOC", "PERSON", "ORG", "FAC", "NORP", "WORK_OF_ART", "EVENT", "PRODUCT", "LANGUAGE")
@@ -142,9 +143,8 @@ def as_question(heard: str | Parse) -> Question:
         heard = parse(heard)
     said = [word for word in heard.asked if word.pos != "PUNCT"]
     content = list(dict.fromkeys(part for word in said if _means(word) for part in _parts(word)))
-    words = tuple(word for word in content if word.lower() not in words_of("kinds"))
     kinds = tuple(part for word in said for part in _parts(word) if part.lower() in words_of("kinds"))
-    words = words or tuple(word for word in content if word.lower() in words_of("kinds"))  # "What is time?"
+    words = tuple(word for word in content if word not in kinds) or tuple(content)  # "What is time?"
     reason, doubtful = _declined(heard, said), heard.kind is None
     if not reason and content and all(word.lower() in words_of("moment") for word in content):
         reason = "it is about the moment, which documents do not know"
@@ -173,11 +173,8 @@ def as_question(heard: str | Parse) -> Question:
 
 def _counted(heard: Parse) -> str:
     """Return the noun after *how many*; empty if there is none, or if it is one of the `kinds`."""
-    many = next((word for word in heard.asked if word.low == "many"), None)
-    noun = heard.tree.head(many) if many is not None else None
-    if noun is None or noun.pos != "NOUN" or noun.low in words_of("kinds"):
-        return ""
-    return noun.text
+    nouns = [heard.tree.head(word) for word in heard.asked if word.low == "many"][:1]
+    return next((noun.text for noun in nouns if noun.pos == "NOUN" and noun.low not in words_of("kinds")), "")
 
 
 def is_name(seen: Parse, word: Word) -> bool:
@@ -220,17 +217,15 @@ def _is_anybody(heard: Parse, word: Word) -> bool:
     if word.dep not in ("nsubj", "nsubjpass") or verb.pos not in ("VERB", "AUX") or word.low not in ("you", "i"):
         return False
     helpers = heard.tree.children(verb, "aux")
+    things = [other for other in heard.tree.subtree(verb) if other.pos in ("NOUN", "PROPN")]
     if any(helper.tag == "VBD" for helper in helpers) or verb.tag == "VBD":
         return False
     if verb.dep == "advcl":
         return True
     if heard.kind is QuestionWord.YES_NO and word.low == "you" and any(helper.low == "can" for helper in helpers):
-        return verb.lemma in words_of("anybody") and any(
-            other.pos in ("NOUN", "PROPN") for other in heard.tree.subtree(verb)
-        )
+        return verb.lemma in words_of("anybody") and bool(things)
     if heard.kind not in (QuestionWord.FORM, QuestionWord.PLACE, QuestionWord.TIME, QuestionWord.AMOUNT):
         return any(helper.low in ("must", "may") for helper in helpers)
-    things = [other for other in heard.tree.subtree(verb) if other.pos in ("NOUN", "PROPN")]
     return bool(things) or any(helper.tag == "MD" for helper in helpers)
 
 
@@ -247,9 +242,7 @@ def _qualifiers(heard: Parse) -> tuple[list[tuple[str, ...]], list[str]]:
             before = tree.before(word)
             if not decides and not (before is not None and before.pos == "CCONJ"):  # "why 42 and not 41?"
                 needs.append(("not", "no", "never", "none", "without"))
-        elif word.low in ("before", "after") and any(
-            other.tag not in ("CD", "WDT") for other in tree.children(word, "pobj")
-        ):
+        elif word.low in ("before", "after") and any(o.tag not in ("CD", "WDT") for o in tree.children(word, "pobj")):
             needs.append(tuple(sorted(words_of("order"))))
         elif word.low in words_of("excluding"):
             needs.append(tuple(sorted(words_of("excluding"))))
@@ -272,11 +265,10 @@ def _qualifiers(heard: Parse) -> tuple[list[tuple[str, ...]], list[str]]:
 
 def _is_superlative(tree: Tree, word: Word) -> bool:
     """Return whether a word is a superlative. The *most* in *most people* is not a superlative."""
-    before = tree.before(word)
-    quantity = (
-        word.low in ("most", "least") and tree.head(word).pos == "NOUN" and (before is None or before.low != "the")
-    )
-    return word.tag in ("JJS", "RBS") and not quantity
+    if word.low in ("most", "least") and tree.head(word).pos == "NOUN":
+        before = tree.before(word)
+        return before is not None and before.low == "the" and word.tag in ("JJS", "RBS")
+    return word.tag in ("JJS", "RBS")
 
 
 def _picked(tree: Tree, rank: Word) -> Iterator[Word]:
@@ -296,7 +288,8 @@ def is_vague(question: Question) -> bool:
         >>> is_vague(as_question("Can they fly?")), is_vague(as_question("When did it start to rain?"))
         (True, False)
     """
-    return len(question.words) < 2 and not _OTHERS.isdisjoint(question.text.strip("?").lower().split())
+    others = PRONOUNS - {"there"}
+    return len(question.words) < 2 and not others.isdisjoint(question.text.strip("?").lower().split())
 
 
 def not_asked(heard: Parse, analysis: Analysis) -> str:

@@ -31,8 +31,6 @@ ALIKE: Mapping[str, tuple[str, ...]] = {
     "choose": ("recommend",),
     "you_think": ("you_think", "should", "worth"),
     "would_you": ("would_you", "favourite"),
-    "risk": ("risk",),
-    "say_what": ("say_what",),
 }
 """The classes whose answers in an area serve a kind, the best first. By default, only its own."""
 WORDING = word_set("repeat shorter say_word")

@@ -27,16 +27,14 @@ _ASIDES = frozenset(("think", "guess", "suppose", "believe"))
 _BESIDE = frozenset(("relcl", "prep", "pobj", "cc", "conj", "appos", "punct", "advcl", "acl"))
 _VAGUE = frozenset(("any", "some", "no", "what", "which", "its", "such", "every", "each", "all"))
 _NOMINAL = frozenset(("NOUN", "PROPN", "ADJ", "NUM", "DET", "PRON", "PART"))
-_TURNED = {
-    "my": "your",
-    "our": "your",
-    "mine": "yours",
-    "ours": "yours",
-    "me": "you",
-    "us": "you",
-    "your": "my",
-    "you": "me",
-}
+TURNED = dict(
+    zip(
+        ["my", "our", "mine", "ours", "me", "us", "i", "am", "your", "you"],
+        ["your", "your", "yours", "yours", "you", "you", "you", "are", "my", "me"],
+        strict=True,
+    )
+)
+"""Words → the words that the agent says for them."""
 _REPEATABLE = re.compile(r"[\w' ,.’-]+")
 
 
@@ -106,7 +104,7 @@ def turned(tree: Tree, words: Sequence[Word]) -> str:
     """Return a noun phrase from the agent's view: *my brother's dog* becomes *your brother's dog*; empty if odd."""
     found = ""
     for word in words:
-        text = _TURNED.get(word.low, word.text)
+        text = TURNED.get(word.low, word.text)
         found += text if not found or text.startswith(("'", "’")) or text == "," else f" {text}"
     return found if len(found) <= LONGEST and _REPEATABLE.fullmatch(found) else ""
 
@@ -185,7 +183,7 @@ def _as_being(tree: Tree, phrase: Phrase, kind: str, gender: str, *, mine: bool)
     plural = any(word.tag in ("NNS", "NNPS") and word.lemma.lower() == phrase.head for word in tree.words)
     if phrase.names and (kind == "pet" or phrase.owner is None):
         return Being(phrase.name, kind, gender)
-    words = [_TURNED.get(word.lower(), word) for word in phrase.text.removesuffix("'s").split()]
+    words = [TURNED.get(word.lower(), word) for word in phrase.text.removesuffix("'s").split()]
     noun = next((word.low for word in tree.words if word.lemma.lower() == phrase.head), phrase.head)
     owned = phrase.owner is not None and len(words) <= 3
     text = (
