@@ -35,9 +35,8 @@ SHORT = 24
 """The maximum number of passages from a document that the thread is about. These need no words of the question."""
 LEVEL = 0.8
 """Two scores count as equal if they differ by less than this."""
-COMMON, COMMON_KIND = 20_000, 2_000
-"""The search skips a word that is in more passages than this, unless all words are so common. `COMMON_KIND` is for
-words of `Question.kinds`."""
+COMMON = 20_000
+"""The search skips a word that is in more passages than this, unless all words are so common."""
 NAMES, KINDS = 0.4, 0.7
 """The share of words to assume if a follow-up has only names: `KINDS` for a passage with a word of `Question.kinds`,
 `NAMES` for other passages."""
@@ -188,7 +187,7 @@ class Answerer:
         counts = {word: min(known.get(stem, 0) for stem in stems) for word, stems in stem_of.items()}
 
         searched = [word for word in searched if word in counts]
-        rare = [word for word in searched if counts[word] <= (COMMON_KIND if word in question.kinds else COMMON)]
+        rare = [word for word in searched if counts[word] <= COMMON]
         in_view = [each for title in titles for each in index.passages(title, SHORT)]
         found = [*in_view, *index.search(rare or searched, RETRIEVED, without=question.avoids)]
         # Many passages that repeat the rarest word may rank above a passage that has all words.

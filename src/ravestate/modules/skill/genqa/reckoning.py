@@ -319,10 +319,14 @@ def _power(base: Any, exponent: Any) -> Any:
     return base**exponent
 
 
+def _divided(one: Any, other: Any) -> Any:
+    return one / other
+
+
 _FUNCTIONS: dict[str, Callable[..., Any]] = {"sqrt": math.sqrt, "cbrt": math.cbrt, "abs": abs}
 _OPERATORS: dict[type, Callable[..., Any]] = {
     ast.Add: operator.add, ast.Sub: operator.sub, ast.Mult: operator.mul, ast.Pow: _power, ast.Mod: operator.mod,
-    ast.Div: operator.truediv, ast.USub: operator.neg, ast.UAdd: operator.pos,
+    ast.Div: _divided, ast.USub: operator.neg, ast.UAdd: operator.pos,
 }  # fmt: skip
 
 

@@ -28,8 +28,9 @@ REMEMBERED = 120.0
 LESS = -0.15
 """The change in log odds from each reading to the next."""
 _ONES = ("one", "ones", "former", "latter")
-_RANKS = {name: place for place, name in enumerate(["first", "second", "third", "fourth", "fifth", "sixth"])}
-_RANKS |= {"last": -1, "latter": -1, "former": -2}
+_RANKS = {name: place for place, name in enumerate(["first", "second", "third", "fourth", "fifth", "sixth"])} | {
+    "last": -1, "latter": -1, "former": -2,
+}  # fmt: skip
 _OWN = ("det", "amod", "compound", "nummod", "poss", "nmod", "quantmod")
 
 
