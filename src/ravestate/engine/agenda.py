@@ -1,4 +1,4 @@
-"""The agenda: the order in which ready activations start, ask for consent, or wait (L15-L17, L22).
+"""The agenda: the order in which ready activations start, ask for consent, or wait (laws L15-L17, L22).
 
 1. Activations that need no consent start first: their rules write no slot, or all their constraints are detached.
 2. When none of these is left, the other ready activations ask for consent (``consent.py``). Activations with older

@@ -1,4 +1,4 @@
-"""Explanations (L25), as data and as text: the reasons why a rule runs, waits, or did not fire.
+"""Explanations (law L25), as data and as text: the reasons why a rule runs, waits, or did not fire.
 
 `ravestate.board.why_not` explains one input in detail and builds on the phrases here.
 """

@@ -1,4 +1,4 @@
-"""Runs: a rule's function starts, is watched, and ends (L17, L18, L21)."""
+"""Runs: a rule's function starts, is watched, and ends (laws L17, L18, L21)."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Stalemates (L16): activations that wait for nothing but each other."""
+"""Stalemates (law L16): activations that wait for nothing but each other."""
 
 from __future__ import annotations
 

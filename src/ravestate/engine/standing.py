@@ -1,4 +1,4 @@
-"""Standing: the order of clauses by effective utility, now and later (L9, L15).
+"""Standing: the order of clauses by effective utility, now and later (laws L9, L15).
 
 The effective utility of a clause is its utility x weight x recovery. Recovery climbs linearly over the rule's cooldown.
 Two clauses that are both worth 0 compare by weight x recovery. Equals compare by declaration.

@@ -1,4 +1,4 @@
-"""Waiting: the changes after which an activation that was refused consent asks again (L15, L16).
+"""Waiting: the changes after which an activation that was refused consent asks again (laws L15, L16).
 
 Each waiting activation keeps the reasons for its wait, a `Refusal`. It asks again when one of these changes:
 
