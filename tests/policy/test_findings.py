@@ -246,8 +246,8 @@ def test_detached_rules_that_trigger_each_other_are_reported_as_a_loop(scene: Sc
     found = scene.findings()
     assert list(found) == [("loop", "m:ping")]
     assert found["loop", "m:ping"] == (
-        "loop: rules m:ping, m:pong trigger each other through m:other, m:one without time passing, and may never end (law L23): "
-        "add .min_age(seconds) to one of these signals"
+        "loop: rules m:ping, m:pong trigger each other through m:other, m:one without time passing, and may never end "
+        "(law L23): add .min_age(seconds) to one of these signals"
     )
 
 

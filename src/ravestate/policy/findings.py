@@ -96,8 +96,8 @@ def _loops(policy: Policy) -> Iterator[Finding]:
         yield Finding(
             "loop",
             rules[0].name,
-            f"{subject} through {few(signals)} without time passing, and may never end (law L23): add .min_age(seconds) to "
-            "one of these signals",
+            f"{subject} through {few(signals)} without time passing, and may never end (law L23): add "
+            ".min_age(seconds) to one of these signals",
         )
 
 

@@ -40,8 +40,8 @@ class Context:
         modules: Modules to compile, or one compiled `Policy` to share.
         settings: Name of a module → the module's settings. They override settings from the environment.
         seed: The seed of all random choices that rules make through ``ctx.random``; a new seed in each run by default.
-        patience: A rival under pressure gives up if it is not ready after this many seconds (law L16). A rule may set its
-            own value.
+        patience: A rival under pressure gives up if it is not ready after this many seconds (law L16). A rule may set
+            its own value.
         trace: True to keep records of all events, for ``trace`` and ``explain``; or a function to call with each record.
         journal: A function, e.g. a `Journal`. It receives each event and each `Taken` record, with its time (seconds).
 

@@ -21,7 +21,8 @@ MERGE = 0.45
 """Two faces up to this distance surely belong to one person. If two people have the same name and such faces, memory
 merges them."""
 MARGIN = 0.05
-"""If the second nearest person is less than this much farther away than the nearest one, the agent recognises nobody."""
+"""If the second nearest person is less than this much farther away than the nearest one, the agent recognises
+nobody."""
 
 
 @dataclass(frozen=True, slots=True)
