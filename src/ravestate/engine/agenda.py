@@ -181,7 +181,8 @@ class Agenda:
         return not (loops.runs > MANY and activation.state == READY and loops.defer(activation))
 
     def _ask(self, activation: Activation) -> bool:
-        """Ask for consent; return whether the activation has it. If not, it waits, and its benches get new heads."""
+        """Ask for consent; return whether the activation has it. If not, it waits, and its benches (``benches.py``) get
+        new heads."""
         refusal = self.consent.ask(activation)
         if refusal.names:
             self.consent.holdings.waits.begin(activation, refusal)

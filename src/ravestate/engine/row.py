@@ -1,5 +1,5 @@
-"""A row: an ordered list of a half's spikes, in which each clause of the half finds its spikes without a long
-search."""
+"""A row: an ordered list of the spikes of a half (``halves.py``). In it, each clause of the half finds its spikes
+fast."""
 
 from __future__ import annotations
 

@@ -114,7 +114,8 @@ class Waits:
                 state.stirred[hope] = None
 
     def stir_half(self, half: Half) -> None:
-        """Record that a half has taken a spike. Activations that hope for one of its rules ask again."""
+        """Record that a half (``halves.py``) has taken a spike. Activations that hope for one of the half's rules ask
+        again."""
         state = self.state
         for hope in state.hoping:
             if hope[0] == RULE and hope[1] in half.places:
