@@ -231,10 +231,10 @@ class Agenda:
             if best not in stuck:
                 continue  # this activation has asked again in the meantime
             if order != state.order(best):
-                heapq.heappush(breakers, (state.order(best), best))  # its rule has run meanwhile
+                heapq.heappush(breakers, (state.order(best), best))  # the activation's rule has run meanwhile
                 continue
             freed = no_longer_stuck(best, stuck)
-            if not found.issuperset(freed):  # something has changed since these were found, so search them again
+            if not found.issuperset(freed):  # a change after the search has freed activations, so search again
                 for other in freed:
                     stuck.discard(other)
                     state.refused[other] = None
