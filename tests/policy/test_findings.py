@@ -120,8 +120,8 @@ def test_a_tie_names_the_rule_that_goes_first(scene: Scene) -> None:
     found = scene.findings()
     assert list(found) == [("tie", "m:right")]
     assert found["tie", "m:right"].endswith(
-        "have the same utility for m:out. m:left goes first because its declaration comes first; write a weight to "
-        "decide"
+        "have the same utility for m:out. m:left goes first because it is declared first; to choose yourself, give one "
+        "of the rules a weight"
     )
 
 

@@ -229,7 +229,7 @@ def _ties(policy: Policy) -> Iterator[Finding]:
                     "tie",
                     second.name,
                     f"rules {first.name} and {second.name} have the same utility for {few(slots)}. {first.name} goes "
-                    "first because its declaration comes first; write a weight to decide",
+                    "first because it is declared first; to choose yourself, give one of the rules a weight",
                 )
                 break
         for key in keys:
