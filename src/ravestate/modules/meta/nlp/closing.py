@@ -16,10 +16,14 @@ SHORTEST = 3
 """The minimum number of words of a question that can stand alone. *And you?* cannot."""
 LONGEST = 5
 """The maximum number of words of a remark."""
+MOST = 8
+"""The maximum number of sentences of an utterance whose last question counts more than the rest."""
 LONG = 10
 """The maximum number of words of a statement that the user turns into a question with *and you?*."""
 
-_POINTING = word_set("it that this they them those these one ones he him his she her so there another more again too else")
+_POINTING = word_set(
+    "it that this they them those these one ones he him his she her so there another more again too else"
+)
 """Words that may refer to the sentences before."""
 _RETURNED = re.compile(
     r"(?:[,.!]|\band\b)\s*(?:(?:and|but|so) )?(?:(?:what|how) about you|(?:do|are|have|can|would|will|did) you|(?<=and )you)"
@@ -69,18 +73,21 @@ def closing_of(tree: Tree, sentences: Sequence[str]) -> Closing | None:
     """Return the question or request that ends an utterance of several sentences; None if it has none."""
     if (returned := _returned(tree)) is not None:
         return returned
-    if len(sentences) < 2:
+    if not 1 < len(sentences) <= MOST:
         return None
     *asides, last = sentences
     text = tree.text.lower()  # the sentences have capitals, the tree has the user's
-    places = [text.find(one.lower().rstrip(".?!")) for one in sentences]
+    places = [0]
+    for one in sentences:
+        places.append(text.find(one.lower().rstrip(".?!"), places[-1]))
+    places = places[1:]
     words = [word for word in tree.words if word.start >= places[-1] and word.pos != "PUNCT"]
     pointing = any(word.low in _POINTING and word.dep != "expl" for word in words[1:])
     if min(places) < 0 or len(words) < SHORTEST or pointing or words[0].low in _POINTING - {"so"}:
         return None
     if not (_requests(words) or (last.endswith("?") and any(word.pos in VERBAL for word in words))):
         return None
-    parts = pairwise([*places[:-1], places[-1]])
+    parts = pairwise(places)
     before = [[word for word in tree.words if start <= word.start < end] for start, end in parts]
     return Closing(last, tuple(asides), all(map(_is_remark, before)))
 
@@ -110,7 +117,9 @@ def _returned(tree: Tree) -> Closing | None:
     ]
     if not said:
         return None
-    return Closing(f"{opening} you {' '.join(said)}?", (tree.text[: found.start()].strip(),), remarks=False, returned=True)
+    return Closing(
+        f"{opening} you {' '.join(said)}?", (tree.text[: found.start()].strip(),), remarks=False, returned=True
+    )
 
 
 def _requests(words: Sequence[Word]) -> bool:
