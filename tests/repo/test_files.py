@@ -76,6 +76,20 @@ def test_every_source_file_says_what_it_is() -> None:
     assert not silent, "\n".join(silent)
 
 
+def test_texts_are_cut_in_one_place() -> None:
+    """`wording.cut` shortens the texts of messages, so that each shortened text ends in the same way."""
+    found = [
+        f"{file.relative_to(ROOT)}:{node.lineno}"
+        for file in sorted(SOURCE.rglob("*.py"))
+        if file != SOURCE / "declare" / "wording.py"
+        for node in ast.walk(ast.parse(file.read_text(encoding="utf-8")))
+        if isinstance(node, ast.BinOp) and isinstance(node.op, ast.Add)
+        if isinstance(node.left, ast.Subscript) and isinstance(node.left.slice, ast.Slice)
+        if isinstance(node.right, ast.Constant) and node.right.value in ("…", "...")
+    ]
+    assert not found, "\n".join(found)
+
+
 def test_no_test_sleeps_in_real_time() -> None:
     """Tests run in virtual time. A real sleep makes a test slow, and sometimes wrong."""
     tests = [file for file in kept_files() if file.is_relative_to(ROOT / "tests") and file.suffix == ".py"]

@@ -10,6 +10,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from ravestate.cli import UsageError
+from ravestate.declare.wording import cut
 from ravestate.errors import PlatformError, RavestateError, nearest
 
 if TYPE_CHECKING:
@@ -252,5 +253,4 @@ def _shown(value: object) -> str:
     """Return a value as text in one line of at most 200 characters, safe for a terminal."""
     from ravestate.modules._text import printable
 
-    text = " ".join(printable(str(value)).split())
-    return text if len(text) <= 200 else text[:199] + "…"
+    return cut(" ".join(printable(str(value)).split()), 200)

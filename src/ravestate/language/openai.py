@@ -10,6 +10,7 @@ from typing import TYPE_CHECKING, Any, cast
 
 from pydantic import AliasChoices, BaseModel, Field, SecretStr, ValidationError
 
+from ravestate.declare.wording import cut
 from ravestate.errors import PlatformError
 
 from .chat import Message, Progress
@@ -188,9 +189,8 @@ class OpenAIBackend:
 
     def _safe(self, text: str, length: int = 300) -> str:
         """Return the beginning of a server's `text`, on one line and without the key."""
-        text = " ".join(text.split())
-        text = text if len(text) <= length else text[:length] + "…"
-        return text.replace(self._key, "***") if self._key else text
+        text = text.replace(self._key, "***") if self._key else text
+        return cut(" ".join(text.split()), length)
 
     def _reason(self, body: bytes) -> str:
         error = _error(body)
