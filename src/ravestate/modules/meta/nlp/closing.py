@@ -45,6 +45,8 @@ _HELPERS = {
 """The auxiliary after *I* → its form before *you*."""
 _TURNED = {"my": "your", "me": "you", "myself": "yourself", "mine": "yours"}
 _ENDS = (".", "!", "?", ",", ";", "and", "but")
+_JUDGING = word_set("think say reckon mean")
+"""Last words of questions about the sentences before: *what do you think?*."""
 _FIRST = word_set("i me my mine we us our")
 _WILLING = word_set("can could will would")
 _SHOWING = word_set("tell sing give show explain say recite recommend suggest play")
@@ -83,7 +85,8 @@ def closing_of(tree: Tree, sentences: Sequence[str]) -> Closing | None:
     places = places[1:]
     words = [word for word in tree.words if word.start >= places[-1] and word.pos != "PUNCT"]
     pointing = any(word.low in _POINTING and word.dep != "expl" for word in words[1:])
-    if min(places) < 0 or len(words) < SHORTEST or pointing or words[0].low in _POINTING - {"so"}:
+    needing = pointing or words[0].low in _POINTING - {"so"} or words[-1].low in _JUDGING
+    if min(places) < 0 or len(words) < SHORTEST or needing:
         return None
     if not (_requests(words) or (last.endswith("?") and any(word.pos in VERBAL for word in words))):
         return None

@@ -280,6 +280,8 @@ def _can_answer(question: Question, found: Found) -> bool:
         needed = "cause"
     elif "how old " in asked:
         needed = "age"
+    elif asked.startswith(("how far is ", "how far are ", "how far away ")):
+        needed = "distance"
     elif kind is QuestionWord.TIME:
         needed = "time"
     if needed:

@@ -10,7 +10,6 @@ from dataclasses import replace
 from datetime import datetime
 from functools import cache
 
-from ravestate.modules.meta.nlp import QuestionWord
 from ravestate.modules.meta.nlp.tree import Word
 
 from .answering import NOT_STATED, Answer, Answerer
@@ -132,8 +131,8 @@ def _again(text: str, before: str) -> str:
 
 
 def _decided(answerer: Answerer, question: Question, settings: Settings, titles: Sequence[str]) -> Answer:
-    """Return the answer. For a yes-or-no question, try `other_wording` first. A vague question gets no sure answer."""
-    if question.kind is QuestionWord.YES_NO and not question.declined and (other := other_wording(question.text)):
+    """Return the answer. Try `other_wording` first. A vague question gets no sure answer."""
+    if not question.declined and (other := other_wording(question.text)):
         decided = answerer.answer(other, titles)
         if decided.confidence >= settings.sure:
             return decided
@@ -149,12 +148,16 @@ def _decided(answerer: Answerer, question: Question, settings: Settings, titles:
 
 
 def other_wording(question: str) -> str:
-    """Return a question whose answer decides a yes-or-no question; empty if there is none.
+    """Return a question whose answer decides a yes-or-no question, or that asks the same in full; empty if there is none.
 
     Example:
+        >>> other_wording("How far is the moon?")
+        'How far away is the moon?'
         >>> other_wording("Is Paris the capital of Germany?")
         'what is the capital of Germany?'
     """
+    if far := re.match(r"(?P<asks>how far) (?P<rest>(?:is|are) [^?]+)", question, re.IGNORECASE):
+        return f"{far['asks']} away {far['rest']}?"
     tree = parse(question).tree
     words = [word for word in tree.words if word.pos != "PUNCT"]
     if not words or words[0].lemma != "be":

@@ -101,6 +101,8 @@ class Listener:
             return False
         if self.wish(heard, state or State()) is not None or is_news(seen.sentences[-1]) or is_cry(seen.text):
             return True
+        if seen.closing is not None:  # "that's not what I asked. how old are you?" asks again
+            return False
         return may_repair(seen) if state is None else repair_in(seen, state) is not None
 
     def performs(self, heard: Heard, state: State) -> bool:
