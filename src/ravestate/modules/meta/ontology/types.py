@@ -8,6 +8,7 @@ from dataclasses import dataclass, field
 from datetime import UTC, date, datetime
 from typing import Any, Literal
 
+from ravestate.declare.wording import short
 from ravestate.errors import RuleError, nearest
 
 from .node import Value
@@ -190,9 +191,7 @@ def _as_stored(what: str, kind: Kind, value: Value) -> Any:
             pass
     if kind == "date" and isinstance(value, date) and not isinstance(value, datetime):
         return value.isoformat()
-    shown = repr(value)
-    shown = shown if len(shown) <= 60 else shown[:57] + "..."
-    raise RuleError(f"{what} is of kind {kind}, not {shown}: write for example {_EXAMPLES[kind]}")
+    raise RuleError(f"{what} is of kind {kind}, not {short(value)}: write for example {_EXAMPLES[kind]}")
 
 
 def _as_loaded(what: str, kind: Kind, value: Any) -> Value:
