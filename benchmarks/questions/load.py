@@ -6,11 +6,11 @@ answer is written. It begins when the input is due, even if the loop is busy the
 benchmark uses the process's own clock, and other programs do not count.
 
 Evenly spaced inputs show the delays that are ours: garbage collection, and the contexts' turns on the loop. Inputs at
-random moments (exponential pauses) also wait for each other. The last figure compares them with an ideal server. It
-gets the inputs at the same moments, and takes our time at full load for each.
+random moments (exponential pauses) also wait for each other. The last figure compares our delays with those of an ideal
+server, which gets the same inputs at the same moments. For each input, this server takes our time at full load.
 
-The floor is a loop of constant work instead of an agent, at the same even moments. The machine causes the delays in its
-slowest percent.
+The floor is a loop that does constant work at the same evenly spaced moments. The machine alone causes the delays in
+this loop's slowest percent.
 """
 
 from __future__ import annotations
@@ -29,7 +29,7 @@ CONTEXTS = 1_000
 LIMIT = 3.0
 """The maximum of the 99th percentile, as a multiple of the median."""
 STEPS, WARM = 1_000, 200
-"""The number of steps of the loop that measures the time of a step, and the number of its runs."""
+"""The loop that measures the time of a step: its number of steps, and how often the loop runs."""
 
 
 class Users:

@@ -1,7 +1,7 @@
 """What do unrelated rules cost?
 
 The agent of ``answer`` (a chain of one rule) runs beside 10 and beside 10,000 rules, each with a signal of its own.
-Each case has its own process, so that neither pays for the memory of the other.
+Each case has its own process, so that neither case pays for the memory of the other.
 """
 
 from __future__ import annotations

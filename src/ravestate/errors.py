@@ -54,11 +54,11 @@ class UsageError(RavestateError):
 
 
 class RuleError(RavestateError, RuntimeError):
-    """A rule failed, returned nonsense, or broke its declaration."""
+    """A rule failed, returned an invalid value, or broke its declaration."""
 
 
 class UndeclaredError(RuleError, LookupError):
-    """A rule read, wrote or emitted a slot or a signal that its declaration does not name (L3)."""
+    """A rule read, wrote or emitted a slot or a signal that its declaration does not name (law L3)."""
 
     def __str__(self) -> str:
         return str(self.args[0]) if self.args else ""

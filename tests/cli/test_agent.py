@@ -235,10 +235,22 @@ def test_an_agent_file_can_take_secrets_from_environment_variables(
         ("settings: {rawio: 3}", "agent.yaml: settings of rawio must be keys and values, not 3"),
         ("modules: [rawio]\nseed: x", "agent.yaml: seed must be a whole number, not 'x'"),
         ("modules: [rawio]\nseed: true", "agent.yaml: seed must be a whole number, not True"),
-        ("modules: [rawio]\npatience: []", "agent.yaml: patience must be 0 seconds or more, not []"),
-        ("modules: [rawio]\npatience: -1", "agent.yaml: patience must be 0 seconds or more, not -1"),
-        ("modules: [rawio]\npatience: .nan", "agent.yaml: patience must be 0 seconds or more, not nan"),
-        ("modules: [rawio]\npatience: .inf", "agent.yaml: patience must be 0 seconds or more, not inf"),
+        (
+            "modules: [rawio]\npatience: []",
+            "agent.yaml: patience must be a finite number of seconds, 0 or more, not []",
+        ),
+        (
+            "modules: [rawio]\npatience: -1",
+            "agent.yaml: patience must be a finite number of seconds, 0 or more, not -1",
+        ),
+        (
+            "modules: [rawio]\npatience: .nan",
+            "agent.yaml: patience must be a finite number of seconds, 0 or more, not nan",
+        ),
+        (
+            "modules: [rawio]\npatience: .inf",
+            "agent.yaml: patience must be a finite number of seconds, 0 or more, not inf",
+        ),
         ("modules: [./gone.py]", "there is no file ./gone.py"),
     ],
 )
@@ -308,7 +320,7 @@ def test_one_message_lists_all_mistakes_of_an_agent_file(folder: Path, capsys: C
         "agent.yaml: the environment has no NO_SUCH_VARIABLE; set it, or write ${NO_SUCH_VARIABLE:-default}",
         "agent.yaml: settings of rawio must be keys and values, not 3",
         "agent.yaml: seed must be a whole number, not 'x'",
-        "agent.yaml: patience must be 0 seconds or more, not 'abc'",
+        "agent.yaml: patience must be a finite number of seconds, 0 or more, not 'abc'",
         "there is no file ./gone.py",
         "there is no module 'rawoi'; did you mean 'rawio'?",
         "--set idel.bored_after=1: module 'idel' is not part of this agent; did you mean 'idle'?",

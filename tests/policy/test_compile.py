@@ -198,7 +198,7 @@ def test_ages_that_exclude_each_other_are_refused() -> None:
 def test_an_age_that_is_negative_or_not_finite_is_refused(age: float) -> None:
     assert "m:go.min_age" in only_fault(lambda m, go: rule(m, "r", go.min_age(age).max_age(None)))
     text = only_fault(lambda m, go: rule(m, "r", go.max_age(age)))
-    assert f"m:go.max_age={age!r}" in text.replace("-1.0", "-1") and "must be 0 s or more" in text
+    assert f"m:go.max_age={age!r}" in text.replace("-1.0", "-1") and text.endswith("0 s or more")
 
 
 @pytest.mark.parametrize(
@@ -206,12 +206,12 @@ def test_an_age_that_is_negative_or_not_finite_is_refused(age: float) -> None:
     [
         ("weight", 0, "above 0"),
         ("weight", -1, "above 0"),
-        ("weight", float("inf"), "above 0"),
+        ("weight", float("inf"), "a finite number, above 0"),
         ("cooldown", -0.5, "0 s or more"),
-        ("cooldown", float("nan"), "0 s or more"),
+        ("cooldown", float("nan"), "a finite number, 0 s or more"),
         ("patience", -1, "0 s or more"),
         ("timeout", 0, "more than 0 s"),
-        ("timeout", float("inf"), "more than 0 s"),
+        ("timeout", float("inf"), "a finite number, more than 0 s"),
     ],
 )
 def test_a_number_out_of_range_is_refused(what: str, value: float, wanted: str) -> None:

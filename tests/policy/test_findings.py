@@ -120,8 +120,8 @@ def test_a_tie_names_the_rule_that_goes_first(scene: Scene) -> None:
     found = scene.findings()
     assert list(found) == [("tie", "m:right")]
     assert found["tie", "m:right"].endswith(
-        "have the same utility for m:out. m:left goes first because its declaration comes first; write a weight to "
-        "decide"
+        "have the same utility for m:out. m:left goes first because it is declared first; to choose "
+        "yourself, give one of the rules a weight"
     )
 
 
@@ -246,8 +246,8 @@ def test_detached_rules_that_trigger_each_other_are_reported_as_a_loop(scene: Sc
     found = scene.findings()
     assert list(found) == [("loop", "m:ping")]
     assert found["loop", "m:ping"] == (
-        "loop: rules m:ping, m:pong trigger each other through m:other, m:one without time passing, and may never end (L23): "
-        "add .min_age(seconds) to one of these signals"
+        "loop: rules m:ping, m:pong trigger each other through m:other, m:one without time passing, and may never end "
+        "(law L23): add .min_age(seconds) to one of these signals"
     )
 
 

@@ -134,7 +134,9 @@ def test_faults_are_raised_before_anything_runs() -> None:
 
 @pytest.mark.parametrize("patience", [-1, float("nan"), float("inf"), "1", None, True])
 def test_patience_is_a_number_of_seconds(patience: Any) -> None:
-    with pytest.raises(rs.DeclarationError, match=r"patience=.* must be 0 s or more, e.g. patience=1.0"):
+    with pytest.raises(
+        rs.DeclarationError, match=r"patience=.* must be a finite number of seconds, 0 or more, e.g. patience=1.0"
+    ):
         rs.Context(policy, patience=patience)
 
 

@@ -108,7 +108,7 @@ export interface ClauseView {
   pathways: number;
   /** The number of the clause's predicates. Each predicate adds ln 2. */
   predicates: number;
-  /** The sum of all addends (L9). */
+  /** The sum of all addends. */
   utility: number;
   /** Utility × weight: the effective utility without a cooldown. */
   base: number;
@@ -340,7 +340,7 @@ export interface Started {
 }
 
 /**
- * One addend of a utility: −ln(rules / |Λ|) nats (L9).
+ * One addend of a utility, in nats: −ln(rules / |Λ|). See law L9 in docs/explanation/utility.md.
  *
  * `rules` is the number of rules that have the signal on a pathway, and |Λ| is the number of all rules.
  */
@@ -495,7 +495,7 @@ export interface Unfold {
   unfolded: string[];
 }
 
-/** A policy as plain values. |Λ| is the number of its rules. */
+/** A policy as plain values. */
 export interface Description {
   modules: string[];
   rules: RuleView[];

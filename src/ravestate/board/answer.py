@@ -1,4 +1,4 @@
-"""The explanation of why a rule did not fire, as data (L25). `ravestate.board.why_not` derives it from a trace."""
+"""The explanation of why a rule did not fire, as data (law L25). `ravestate.board.why_not` derives it from a trace."""
 
 from __future__ import annotations
 

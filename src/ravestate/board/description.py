@@ -40,7 +40,7 @@ class GateView:
 
 @dataclass(frozen=True, slots=True)
 class Term:
-    """One addend of a utility: −ln(rules / |Λ|) nats (L9).
+    """One addend of a utility, in nats: −ln(rules / |Λ|). See law L9 in docs/explanation/utility.md.
 
     `rules` is the number of rules that have the signal on a pathway, and |Λ| is the number of all rules.
     """
@@ -59,7 +59,7 @@ class ClauseView:
         terms: The addends of the pathway with the least utility. This pathway decides the clause's utility.
         pathways: The number of the clause's pathways.
         predicates: The number of the clause's predicates. Each predicate adds ln 2.
-        utility: The sum of all addends (L9).
+        utility: The sum of all addends.
         base: Utility × weight: the effective utility without a cooldown.
     """
 
@@ -124,7 +124,7 @@ class SlotView:
 
 @dataclass(frozen=True, slots=True)
 class Description:
-    """A policy as plain values. |Λ| is the number of its rules."""
+    """A policy as plain values."""
 
     modules: tuple[str, ...]
     rules: tuple[RuleView, ...]
@@ -142,7 +142,7 @@ class Description:
 
 
 def describe(policy: Policy) -> Description:
-    """Return the description of a policy. A description of a hundred rules takes milliseconds, so make it only once."""
+    """Return the description of a policy. This takes several milliseconds for a hundred rules, so keep the result."""
     readers: _Users = {}
     writers: _Users = {}
     for name, rule in policy.rules.items():

@@ -154,7 +154,8 @@ class History:
         """Return the first run of a rule in `hears` that answered the group; None if none did.
 
         A run answers the group if it fires and consumes one of the group's spikes. For each rule, `hears` has one
-        collection for each clause: the signals that the clause consumes. A detached constraint consumes no spike (L19).
+        collection for each clause: the signals that the clause consumes. A detached constraint consumes no spike (law
+        L19).
         """
 
         def is_taken(attempt: Attempt, signals: Collection[str]) -> bool:

@@ -1,4 +1,4 @@
-"""Explanations of why a rule did not fire for an input (L25). They need only the trace.
+"""Explanations of why a rule did not fire for an input (law L25). They need only the trace.
 
 A user asks about one spike and one rule. The answer is about the spike's causal group: all spikes with the same cause.
 An *attempt* is an activation of the rule with spikes of this group (``history.py``). The answer names the furthest step

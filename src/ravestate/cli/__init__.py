@@ -38,7 +38,7 @@ COMMANDS = {
 
 
 LAST_GRACE = 0.5
-"""A command that ends waits this many seconds for rules whose functions are still running."""
+"""At its end, a command waits at most this many seconds for functions of rules that are still running."""
 
 
 def main(argv: Sequence[str] | None = None) -> int:

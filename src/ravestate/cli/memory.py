@@ -41,8 +41,8 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
 def _add_place(parser: argparse.ArgumentParser, *, later: bool = False) -> None:
     """Add the options that choose a memory.
 
-    With `later`, the options come after an action. If the user leaves an option out after the action, the option keeps
-    its value from before the action.
+    With `later`, the options come after an action. An option that is missing there keeps its value from before the
+    action.
     """
     default = argparse.SUPPRESS if later else None
     parser.add_argument(

@@ -1,4 +1,4 @@
-"""Conditions: boolean combinations of constraints on signals and of predicates on slots (L3, L4).
+"""Conditions: boolean combinations of constraints on signals and of predicates on slots (laws L3, L4).
 
 A condition is a value. ``&`` and ``|`` build trees; ``policy/clauses.py`` brings them into disjunctive normal
 form.

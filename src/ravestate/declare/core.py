@@ -1,4 +1,4 @@
-"""The built-in signals and flags (L22): the module ``core``, which has no rules."""
+"""The built-in signals and flags (law L22): the module ``core``, which has no rules."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""A module: a value that holds the declarations of a designer (L1-L3). No registry, no side effects."""
+"""A module: a value that holds the declarations of a designer (laws L1-L3). No registry, no side effects."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""The outcomes that a rule function may return or raise (L18)."""
+"""The outcomes that a rule function may return or raise (law L18)."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""A rule: an annotated function with a condition (L3)."""
+"""A rule: an annotated function with a condition (law L3)."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""A signal: a named kind of event (L1)."""
+"""A signal: a named kind of event (law L1)."""
 
 from __future__ import annotations
 

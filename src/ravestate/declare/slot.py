@@ -1,4 +1,4 @@
-"""Slots: named, typed, long-lived variables, each with signals of its own (L2)."""
+"""Slots: named, typed, long-lived variables, each with signals of its own (law L2)."""
 
 from __future__ import annotations
 

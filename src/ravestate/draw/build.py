@@ -1,9 +1,8 @@
 """Building a diagram from declared rules.
 
 The diagram shows a slot or a signal only if a rule uses it. It shows a signal of a slot only if a rule waits for this
-signal.
-Conditions are in disjunctive normal form, because a rule fires by one clause at a time (L5). Several constraints of a
-clause meet in a conjunction, and several clauses meet in a disjunction.
+signal. Conditions are in disjunctive normal form, because a rule fires by one clause at a time (law L5). Several
+constraints of a clause meet in a conjunction, and several clauses meet in a disjunction.
 """
 
 from __future__ import annotations

@@ -20,8 +20,9 @@ _PATIENCE = 4  # the search ends after this many sweeps without improvement
 def minimise_crossings(graph: LayeredGraph, *, centred: bool = False) -> None:
     """Reorder the layers of `graph` in place.
 
-    A vertex's neighbours are initially in order of creation. If `centred`, the dummies among them are in the middle. A
-    hyperedge through many layers then runs straight, with branches to both sides.
+    A vertex's neighbours are initially in order of creation. If `centred`, the dummies among them (vertices at which a
+    long edge passes a layer) are in the middle. A hyperedge through many layers then runs straight, with branches to
+    both sides.
     """
     before, after = graph.neighbours()
     if centred:
@@ -29,7 +30,7 @@ def minimise_crossings(graph: LayeredGraph, *, centred: bool = False) -> None:
         after = [_dummies_centred(graph, vertices) for vertices in after]
     sweeps = max(4, min(24, _WORK // (1 + len(graph.segments))))
     best = graph.order
-    # With the 1, an equally good initial order replaces the order of creation.
+    # An order with as many crossings as the order of creation still replaces that order, because of the + 1.
     least = count_crossings(best, after) + 1
     for downwards in (True, False):
         order, crossed = _sweep(_start(graph, before, after, downwards), before, after, sweeps)

@@ -17,7 +17,8 @@ from ravestate.draw.graph import EdgeKind
 VertexKind = Literal["node", "label", "dummy"]
 
 _GAPS = {(True, True): 16.0, (True, False): 12.0, (False, True): 12.0, (False, False): 9.0}
-"""The minimum gap between two adjacent vertices (pixels). Key: for the upper and the lower, whether it is no dummy."""
+"""The minimum gap between two adjacent vertices (pixels). Key: whether the upper one is not a dummy, and the lower
+one."""
 _SOLID: tuple[EdgeKind, ...] = ("writes", "emits")  # solid lines may overlap; dashed lines would blur each other
 _PITCH = 10.0  # pixels between ports of one side, where there is room
 _MARGIN = 10.0  # pixels from a corner, which may be round, to the first or last port
@@ -102,8 +103,8 @@ def proper_layering(ranks: Sequence[int], sizes: Sequence[tuple[float, float]], 
     for link in links:
         share_low = from_low[_low(link)] >= from_high[_high(link)]
         if link.label is not None or link.kind not in _SOLID:
-            # A label needs a piece of line that belongs only to its edge, near the arrow's head. The dashes of two
-            # lines match only if both lines start at the same point, so dashed lines share dummies only from there.
+            # A label needs a piece of line that belongs only to its edge, near the arrow's head. And dashed lines may
+            # overlap only at their start, because the dashes of two lines match only there.
             share_low = not link.is_reversed
         builder.link(link, ranks[link.low], ranks[link.high], share_low)
     graph.order = [[] for _ in range(max(graph.layer, default=-1) + 1)]

@@ -1,4 +1,4 @@
-"""The life of an activation (L12, L14, L17, L18).
+"""The life of an activation (laws L12, L14, L17, L18).
 
 An activation is a clause plus the spikes that it has acquired. With consent, it becomes a run of the rule. Every clause
 also has an activation on stand-by, which holds no spike yet. No object represents a stand-by: the engine creates an

@@ -1,4 +1,4 @@
-"""The agenda: the order in which ready activations start, ask for consent, or wait (L15-L17, L22).
+"""The agenda: the order in which ready activations start, ask for consent, or wait (laws L15-L17, L22).
 
 1. Activations that need no consent start first: their rules write no slot, or all their constraints are detached.
 2. When none of these is left, the other ready activations ask for consent (``consent.py``). Activations with older
@@ -181,7 +181,8 @@ class Agenda:
         return not (loops.runs > MANY and activation.state == READY and loops.defer(activation))
 
     def _ask(self, activation: Activation) -> bool:
-        """Ask for consent; return whether the activation has it. If not, it waits, and its benches get new heads."""
+        """Ask for consent; return whether the activation has it. If not, it waits, and its benches (``benches.py``) get
+        new heads."""
         refusal = self.consent.ask(activation)
         if refusal.names:
             self.consent.holdings.waits.begin(activation, refusal)
@@ -230,10 +231,10 @@ class Agenda:
             if best not in stuck:
                 continue  # this activation has asked again in the meantime
             if order != state.order(best):
-                heapq.heappush(breakers, (state.order(best), best))  # its rule has run meanwhile
+                heapq.heappush(breakers, (state.order(best), best))  # the activation's rule has run meanwhile
                 continue
             freed = no_longer_stuck(best, stuck)
-            if not found.issuperset(freed):  # something has changed since these were found, so search them again
+            if not found.issuperset(freed):  # a change after the search has freed activations, so search again
                 for other in freed:
                     stuck.discard(other)
                     state.refused[other] = None

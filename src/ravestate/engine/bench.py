@@ -1,4 +1,5 @@
-"""A bench: spikes that wait together for a second spike, their counterpart (``benches.py``)."""
+"""A bench: spikes of a half (``halves.py``) that wait together for a second spike, their counterpart
+(``benches.py``)."""
 
 from __future__ import annotations
 

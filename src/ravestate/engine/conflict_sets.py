@@ -1,12 +1,12 @@
 """Conflict sets: clauses that the same spike makes ready, although only one of them can run.
 
 A thousand rules that hear the same signal and write the same slot would need a thousand activations. One would run, and
-the rest would give up. So only the best clause gets an activation; the other clauses are its queue of alternatives. If
-its run resigns or fails, the next clause takes its place. If there is a tracer, or when a rule retires or is added, the
-queue *unfolds* into ordinary activations. It also unfolds if a rival's utility may lie between those of the clauses
-(`Consent.is_contested`). The number of each activation is fixed from the start, and no signal that an alternative
-raises can help a rival (`find_conflict_sets`). So it does not matter when a queue unfolds. An explanation unfolds
-nothing.
+the rest would give up. So only the best clause gets an activation; the other clauses form the activation's queue of
+alternatives. If the activation's run resigns or fails, the next clause takes its place. If there is a tracer, or when a
+rule retires or is added, the queue *unfolds* into ordinary activations. It also unfolds if a rival's utility may lie
+between those of the clauses (`Consent.is_contested`). The number of each activation is fixed from the start, and no
+signal that an alternative raises can help a rival (`find_conflict_sets`). So it does not matter when a queue unfolds.
+An explanation unfolds nothing.
 """
 
 from __future__ import annotations
@@ -61,9 +61,9 @@ class ConflictSets:
         """Create the activations of all alternatives in one activation's queue."""
         clauses, made, base = self.state.alternatives.pop(activation)
         spike = activation.spike(activation.clause.needs[0])
-        assert spike is not None  # it is ready, or runs
+        assert spike is not None  # the activation is ready or runs, so it holds a spike
         if spike.group.root().finished(activation.clause.rule.slots):
-            return  # its group has merged with one in which the slots are consumed
+            return  # the spike's group has merged with a group in which the slots are consumed
         for position in range(made, len(clauses)):
             if spike.refused is None or clauses[position].rule.index not in spike.refused:
                 self._activate(clauses[position], base + position + 1, spike)

@@ -1,4 +1,4 @@
-"""Consent (L15): whether a ready activation may run now, and if not, which activations it waits for.
+"""Consent (law L15): whether a ready activation may run now, and if not, which activations it waits for.
 
 The activation asks each causal group of its spikes. A group refuses while a run in the group has taken a slot that the
 activation writes. It also refuses while a *rival* stands in the group: another clause that writes such a slot, has

@@ -23,7 +23,7 @@ class Kind(enum.IntEnum):
     LOOK = 1  # a spike is old enough for a detached need
     RECHECK = 2  # a reason to wait may end at this time (`Refusal.recheck`)
     PATIENCE = 3  # the patience of a pressured activation ends
-    EXPIRE = 4  # a spike is too old for an incomplete activation, or for a half
+    EXPIRE = 4  # a spike is too old for an incomplete activation, or for a half (halves.py)
     FORGET = 5  # a spike is too old for every detached need
     TIMEOUT = 6  # a run times out
     WATCH = 7  # the spikes of an `until` condition are old enough

@@ -24,7 +24,7 @@ from ravestate.errors import EngineError
 from ravestate.policy.policy import Policy
 
 DEFAULT_PATIENCE = 1.0
-"""The default patience of a rival under pressure, in seconds (L16)."""
+"""The default patience of a rival under pressure, in seconds (law L16)."""
 
 SPARE: Final = 64
 """The maximum number of unused `Parts` that a policy keeps for its engines."""

@@ -1,4 +1,7 @@
-"""Live spikes, and the entries of the halves: the spikes that halves hold without an activation (L12, L14, L23)."""
+"""Live spikes, and the entries of the halves (``halves.py``): the spikes that halves hold without an activation.
+
+See laws L12, L14 and L23.
+"""
 
 from __future__ import annotations
 

@@ -59,7 +59,7 @@ class Emit:
 
 @dataclass(slots=True)
 class Wipe:
-    """A run, or code outside the rules (``run=None``), withdraws a signal's live spikes and their descendants (L20)."""
+    """A run, or code outside the rules (``run=None``), withdraws a signal's live spikes and their descendants."""
 
     signal: str
     run: int | None = None

@@ -1,4 +1,4 @@
-"""Explanations (L25), as data and as text: the reasons why a rule runs, waits, or did not fire.
+"""Explanations (law L25), as data and as text: the reasons why a rule runs, waits, or did not fire.
 
 `ravestate.board.why_not` explains one input in detail and builds on the phrases here.
 """
@@ -180,9 +180,10 @@ def activations(state: State) -> dict[int, list[ActivationState]]:
 
 
 def stand_ins(state: State) -> dict[int, list[Activation]]:
-    """Return the activations that the entries of halves and the queues of alternatives stand for, by rule.
+    """Return, by rule, the activations for which entries of halves and queues of alternatives stand.
 
-    No table of the engine has them, because an explanation changes nothing.
+    See ``halves.py`` and ``conflict_sets.py``. No table of the engine has these activations, because an explanation
+    changes nothing.
     """
     found: dict[int, list[Activation]] = {}
     for half, spikes in state.halves.items():

@@ -1,4 +1,4 @@
-"""A causal group: spikes with a common cause, and the decisions about them (L11, L15)."""
+"""A causal group: spikes with a common cause, and the decisions about them (laws L11, L15)."""
 
 from __future__ import annotations
 

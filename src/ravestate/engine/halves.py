@@ -114,10 +114,10 @@ class Halves:
                     self._make(need, spike)
 
     def share(self, policy: Policy) -> None:
-        """Create the activations that `_pair` left out, for clauses whose signals are kin only under a new policy.
+        """Create the activations that `_pair` left out, for clauses whose needs are kin only under a new policy.
 
         So far, an activation that lost a spike took the oldest live spike, so the other activations could form the
-        missing pairs. From now on, such an activation may only take a spike of the same causal group (L12). So each
+        missing pairs. From now on, such an activation may only take a spike of the same causal group (law L12). So each
         spike gets its own activation, with the first counterpart that came later.
         """
         for activations in list(self.state.active.values()):

@@ -1,4 +1,4 @@
-"""Holdings: activations take spikes and give them up, and so become ready or end (L12, L14, L20, L23)."""
+"""Holdings: activations take spikes and give them up, and so become ready or end (laws L12, L14, L20, L23)."""
 
 from __future__ import annotations
 

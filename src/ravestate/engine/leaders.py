@@ -6,7 +6,7 @@ rival of each. So only the best one, the *leader*, asks in full (``consent.py``)
 leader, and examine no other rival.
 
 An activation cannot follow if the utility of a rival lies between the leader's and its own. The leader did not examine
-this rival, but the activation would put it under pressure, or expect help from it (L16). So the activation asks in
+this rival, but the activation would put it under pressure, or expect help from it (law L16). So the activation asks in
 full, and becomes the leader of the activations behind it.
 
 An activation that asks in full may also expect help from the leader's effects. A follower does not. So an activation

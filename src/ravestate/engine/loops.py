@@ -1,4 +1,4 @@
-"""Endless loops (L23): rules that trigger each other without time passing.
+"""Endless loops (law L23): rules that trigger each other without time passing.
 
 An instant lasts until the engine has nothing left to do. After `MANY` runs in one instant, the engine notes for each
 new spike which rules led to the spike. A run is a further *turn* of a loop if its rule also led to one of its spikes.

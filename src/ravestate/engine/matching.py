@@ -1,4 +1,7 @@
-"""Matching: each new spike joins a causal group, and is offered to the activations that lack it (L11, L12, L19)."""
+"""Matching: each new spike joins a causal group, and is offered to the activations that lack it.
+
+See laws L11, L12 and L19.
+"""
 
 from __future__ import annotations
 

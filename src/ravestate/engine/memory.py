@@ -20,7 +20,7 @@ class Memory:
 
     Args:
         policy: A policy from ``rs.compile``.
-        patience: The patience of rivals under pressure, in seconds, unless their rule sets its own (L16).
+        patience: The patience of rivals under pressure, in seconds, unless their rule sets its own (law L16).
         report_ends: Whether the engine reports the end of each run as an `Ended` effect.
     """
 

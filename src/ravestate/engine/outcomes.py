@@ -1,4 +1,4 @@
-"""The table of the outcomes of runs (L18, L20, L21).
+"""The table of the outcomes of runs (laws L18, L20, L21).
 
 The key of a row has two words: the engine's reason to cancel the run (empty without a cancellation), and the end of the
 run's function. A row has two outcomes: one for a run that wrote no slot, and one for a run that wrote a slot. A run

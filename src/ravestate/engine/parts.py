@@ -155,7 +155,7 @@ class Parts:
         self.emit(event.signal, event.payload, event.run)
 
     def on_wipe(self, event: events.Wipe) -> None:
-        """Withdraw the live spikes of a signal and all their descendants; cancel the runs that stand on them (L20)."""
+        """Withdraw the live spikes of a signal and all their descendants; cancel the runs that stand on them."""
         signal = self._signal(event.signal)
         wiper = None if event.run is None else self._run(event.run)
         state = self.state

@@ -1,4 +1,7 @@
-"""All reasons that traces and explanations give, with their wording (L25). The board's page uses this table, too."""
+"""All reasons that traces and explanations give, with their wording (law L25).
+
+The board's page uses this table, too.
+"""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""A refusal: the reasons for which a ready activation waits (L15)."""
+"""A refusal: the reasons for which a ready activation waits (law L15)."""
 
 from __future__ import annotations
 

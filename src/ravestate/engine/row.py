@@ -1,5 +1,5 @@
-"""A row: an ordered list of a half's spikes, in which each clause of the half finds its spikes without a long
-search."""
+"""A row: an ordered list of the spikes of a half (``halves.py``). In it, each clause of the half finds its spikes
+fast."""
 
 from __future__ import annotations
 
@@ -13,8 +13,7 @@ if TYPE_CHECKING:
     from ravestate.engine.state import State
 
 SPARE = 32
-"""The spikes that a row may have beyond twice those of its half. A longer row drops the spikes that the half gave
-up."""
+"""If a row has more than twice its half's spikes, plus this number, the row drops the spikes that the half gave up."""
 
 
 class Row:
@@ -33,7 +32,8 @@ class Row:
         self._starts: dict[Need, int] = {}
 
     def find(self, need: Need, state: State, *, all_: bool) -> list[Spike]:
-        """Return a list of the oldest spike that the half holds for a need or, with `all_`, of all these spikes."""
+        """Return a list with the oldest spike that the half holds for a need; with `all_`, a list with all such
+        spikes."""
         self._catch_up()
         spikes, found = self._spikes, list[Spike]()
         place = self._starts.get(need, 0)

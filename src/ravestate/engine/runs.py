@@ -1,4 +1,4 @@
-"""Runs: a rule's function starts, is watched, and ends (L17, L18, L21)."""
+"""Runs: a rule's function starts, is watched, and ends (laws L17, L18, L21)."""
 
 from __future__ import annotations
 
@@ -218,7 +218,7 @@ class Runs:
 
     def _relinquish(self, run: Activation) -> None:
         """Settle Resign, or Error before a write (L18): free the run's slots, make its rule give up the run's spikes,
-        and let the next alternative ask."""
+        and let the next alternative (``conflict_sets.py``) ask."""
         for group in _roots(run):
             for slot in run.clause.rule.slots:
                 group.free(slot, run)

@@ -1,4 +1,4 @@
-"""Slots: a write changes a value and raises the slot's signals (L2, L13)."""
+"""Slots: a write changes a value and raises the slot's signals (laws L2, L13)."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""A spike: an occurrence of a signal (L11)."""
+"""A spike: an occurrence of a signal (law L11)."""
 
 from __future__ import annotations
 

@@ -1,7 +1,8 @@
-"""Standing: the order of clauses by effective utility, now and later (L9, L15).
+"""Standing: the order of clauses by effective utility, now and later (laws L9, L15).
 
-The effective utility of a clause is its utility x weight x recovery. Recovery climbs linearly over the rule's cooldown.
-Two clauses that are both worth 0 compare by weight x recovery. Equals compare by declaration.
+The effective utility of a clause is its utility x weight x recovery. After a run, recovery climbs from 0 to 1 over the
+rule's cooldown. If both utilities are 0, weight x recovery decides. If two clauses are equal, the one declared first is
+ahead.
 """
 
 from __future__ import annotations
@@ -12,7 +13,7 @@ from math import inf
 from ravestate.policy.model import Clause
 
 SAME = 1e-9
-"""Two worths count as equal if their relative difference is at most this, because times of crossings are rounded."""
+"""Two utilities count as equal if their relative difference is at most this, because times of crossings are rounded."""
 
 DIGITS = 9
 """The time of a crossing (seconds) is rounded to this many decimal places, so that events of one moment coincide."""
@@ -22,7 +23,7 @@ INSTANT = 0.5e-9
 
 
 class Standing:
-    """The worth of clauses at the present moment of an engine; `ran` has the times of the rules' last runs."""
+    """The effective utilities of clauses at an engine's present moment; `ran` has the times of the rules' last runs."""
 
     __slots__ = ("now", "ran")
 

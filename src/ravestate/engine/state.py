@@ -130,7 +130,7 @@ class State(Memory):
         self.patience_ends: dict[Spike, dict[Half, list[tuple[int, float]]]] = NOTHING
         """Spike → half that holds the spike → pairs of a count and a time (seconds). The count says how many of the
         half's best clauses are under pressure, including the clauses of earlier pairs. The time is the end of the
-        patience of the clauses that the pair adds (L16)."""
+        patience of the clauses that the pair adds (law L16)."""
         self.gated: dict[Activation, None] = NOTHING
         """Activations that hold all their spikes, but have a slot predicate that is false."""
         self.free = Free()

@@ -1,4 +1,4 @@
-"""The trace (L25): a closed union of records for the debugger, the recorder and the tests.
+"""The trace (law L25): a closed union of records for the debugger, the recorder and the tests.
 
 The engine makes a record only while it has a tracer. The records identify a run by the number of its activation. Events,
 effects and ``ctx.run`` have the run's own number, which is the same without a tracer. `Started` has both.

@@ -1,4 +1,4 @@
-"""Waiting: the changes after which an activation that was refused consent asks again (L15, L16).
+"""Waiting: the changes after which an activation that was refused consent asks again (laws L15, L16).
 
 Each waiting activation keeps the reasons for its wait, a `Refusal`. It asks again when one of these changes:
 
@@ -114,7 +114,8 @@ class Waits:
                 state.stirred[hope] = None
 
     def stir_half(self, half: Half) -> None:
-        """Record that a half has taken a spike. Activations that hope for one of its rules ask again."""
+        """Record that a half (``halves.py``) has taken a spike. Activations that hope for one of the half's rules ask
+        again."""
         state = self.state
         for hope in state.hoping:
             if hope[0] == RULE and hope[1] in half.places:

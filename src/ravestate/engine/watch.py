@@ -1,4 +1,4 @@
-"""A watch over a run: the state of its `until` condition (L21)."""
+"""A watch over a run: the state of its `until` condition (law L21)."""
 
 from __future__ import annotations
 

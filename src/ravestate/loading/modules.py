@@ -61,7 +61,7 @@ def _from_file(name: str, path: Path) -> Module:
         raise UsageError(f"there is no file {name}")
     known = sys.modules.get(path.stem)
     if known is not None and getattr(known, "__file__", None) == str(path):
-        return _as_module(name, known)  # a test may have imported the file before; it needs the same slot objects
+        return _as_module(name, known)  # a test that has imported the file needs the same slot objects
     spec = importlib.util.spec_from_file_location(path.stem, path)
     if spec is None or spec.loader is None:
         raise UsageError(f"{name} is not a Python file")

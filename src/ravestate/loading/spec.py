@@ -21,7 +21,11 @@ from ravestate.yaml_text import load_yaml
 KEYS = ("modules", "settings", "seed", "patience")
 NUMBERS: tuple[tuple[str, Callable[[Any], bool], str], ...] = (
     ("seed", lambda value: type(value) is int, "a whole number"),
-    ("patience", lambda value: type(value) in (int, float) and 0 <= value < math.inf, "0 seconds or more"),
+    (
+        "patience",
+        lambda value: type(value) in (int, float) and 0 <= value < math.inf,
+        "a finite number of seconds, 0 or more",
+    ),
 )
 """The numbers in an agent file: each key, its test, and a description of a valid value."""
 VARIABLE = re.compile(r"\$\{([A-Za-z_][A-Za-z0-9_]*)(?::-([^}]*))?\}")
@@ -35,7 +39,7 @@ class AgentSpec:
         modules: The modules, in order.
         settings: Name of a module → key → value. Only settings from files and options are here.
         seed: The seed of random choices; `None` for a new seed in each run.
-        patience: A rival under pressure gives up if it is not ready after this many seconds (L16).
+        patience: A rival under pressure gives up if it is not ready after this many seconds (law L16).
         faults: A message for each mistake so far.
     """
 

@@ -1,4 +1,4 @@
-"""The static graph of causes between signals (L7), and its closures.
+"""The static graph of causes between signals (law L7), and its closures.
 
 An edge leads from a signal, through a rule that hears it, to a signal that the rule raises. No edge leads through a
 detached rule, because its effects have no causes. The closure of a signal holds the signal itself and all signals from

@@ -1,4 +1,4 @@
-"""Disjunctive normal form (L5): a condition as an ordered list of conjunctions."""
+"""Disjunctive normal form (law L5): a condition as an ordered list of conjunctions."""
 
 from __future__ import annotations
 

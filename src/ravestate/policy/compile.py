@@ -1,4 +1,4 @@
-"""Compiling: modules become one immutable `Policy`, or one exception reports every fault (L6)."""
+"""Compiling: modules become one immutable `Policy`, or one exception reports every fault (law L6)."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""The graph that completes clauses to pathways (L8).
+"""The graph that completes clauses to pathways (law L8).
 
 An *alternative* of a signal is a set of signals that together may cause it. An input, or a signal without causes, also
 has the empty alternative. A pathway of a clause is a set of signals. It holds the clause's own signals and, for each

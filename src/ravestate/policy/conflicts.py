@@ -1,4 +1,4 @@
-"""Conflicts between rules (L10): pairs of rules that exclude each other, and the winner of each pair."""
+"""Conflicts between rules (law L10): pairs of rules that exclude each other, and the winner of each pair."""
 
 from __future__ import annotations
 

@@ -10,7 +10,7 @@ from ravestate.policy.model import Clause, Half, Need, RulePlan, SignalPlan, Slo
 
 
 def connect(signals: Sequence[SignalPlan], slots: Iterable[SlotPlan], rules: Iterable[RulePlan]) -> None:
-    """Set the listeners and watchers of each signal; mark the signals that are inputs (L8), and the slots with
+    """Set the listeners and watchers of each signal; mark the signals that are inputs (law L8), and the slots with
     guards."""
     raised = {signal for rule in rules for signal in rule.raises}
     listeners: list[list[Need]] = [[] for _ in signals]

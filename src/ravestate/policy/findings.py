@@ -96,8 +96,8 @@ def _loops(policy: Policy) -> Iterator[Finding]:
         yield Finding(
             "loop",
             rules[0].name,
-            f"{subject} through {few(signals)} without time passing, and may never end (L23): add .min_age(seconds) to "
-            "one of these signals",
+            f"{subject} through {few(signals)} without time passing, and may never end (law L23): add "
+            ".min_age(seconds) to one of these signals",
         )
 
 
@@ -126,7 +126,7 @@ def _unreachable(policy: Policy) -> Iterator[Finding]:
 
 
 def _starves(policy: Policy, clause: Clause, known: dict[tuple[int, frozenset[int]], bool]) -> bool:
-    """Return whether a signal of the clause comes only from rules that have already written a slot of the clause."""
+    """Return whether a signal of the clause comes only from rules that write a slot of the clause, too."""
     slots = clause.rule.slotset
     for need in clause.needs:
         if need.detached or need.signal.input:
@@ -229,7 +229,7 @@ def _ties(policy: Policy) -> Iterator[Finding]:
                     "tie",
                     second.name,
                     f"rules {first.name} and {second.name} have the same utility for {few(slots)}. {first.name} goes "
-                    "first because its declaration comes first; write a weight to decide",
+                    "first because it is declared first; to choose yourself, give one of the rules a weight",
                 )
                 break
         for key in keys:

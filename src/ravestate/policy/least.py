@@ -1,4 +1,4 @@
-"""The least pathway of a clause (L9): the pathway with the least information.
+"""The least pathway of a clause (law L9): the pathway with the least information.
 
 An *alternative* of a signal is a set of signals that together may cause it. A pathway is a set that holds an
 alternative of each of its signals (`Completion`). Its *cost* is its information.

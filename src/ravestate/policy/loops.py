@@ -1,4 +1,4 @@
-"""Rules that trigger each other without time passing (L23).
+"""Rules that trigger each other without time passing (law L23).
 
 In a loop, each rule has a clause whose signals come from rules of the loop, and at least one rule or constraint is
 detached. Without detachment, the causal group ends the loop (L19). A clause with a ``min_age`` or a predicate is not

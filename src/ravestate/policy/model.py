@@ -22,7 +22,7 @@ class ClauseView:
 
     Attributes:
         signals: The signals of the clause's constraints, as declared.
-        pathways: The clause's completed pathways (L8); those with the least information come first. At most 256 are
+        pathways: The clause's completed pathways (law L8); those with the least information come first. At most 256 are
             listed, because there may be exponentially many.
         utility: The least self-information among the clause's pathways, in nats (L9).
     """

@@ -39,7 +39,9 @@ class Numbers:
                 return 1.0
             source = f"{number!r} = {found!r}"
             number = found
-        if math.isnan(number) or math.isinf(number) or not valid(number):
+        if not math.isfinite(number):
+            wanted = f"a finite number, {wanted}"
+        if not math.isfinite(number) or not valid(number):
             self.faults.append(f"{where}={source} must be {wanted}")
             return 1.0
         return float(number)

@@ -1,4 +1,4 @@
-"""All pathways of a clause (L8), for explanations.
+"""All pathways of a clause (law L8), for explanations.
 
 An *alternative* of a signal is a set of signals that together may cause it. To make a pathway of a signal, choose one
 of its alternatives, and one pathway of each signal in the alternative. The union of these pathways and the signal

@@ -1,4 +1,4 @@
-"""The policy: compiled modules, immutable, for any number of contexts (L6)."""
+"""The policy: compiled modules, immutable, for any number of contexts (law L6)."""
 
 from __future__ import annotations
 

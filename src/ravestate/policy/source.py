@@ -1,7 +1,7 @@
 """Mistakes in the source of a rule's function: undeclared acts, names that do not exist, a forgotten ``await``.
 
 An act is a read, a write, an emit or the use of a payload. This file checks an act only if the function's globals or
-closure hold the slot or signal. All other acts are checked when the rule runs (L3), e.g. an act on a name that the
+closure hold the slot or signal. All other acts are checked when the rule runs (law L3), e.g. an act on a name that the
 function itself binds.
 
 Guarded code is also checked only when the rule runs. Code is guarded if it is in a branch on a constant, on

@@ -40,8 +40,8 @@ class Context:
         modules: Modules to compile, or one compiled `Policy` to share.
         settings: Name of a module → the module's settings. They override settings from the environment.
         seed: The seed of all random choices that rules make through ``ctx.random``; a new seed in each run by default.
-        patience: A rival under pressure gives up if it is not ready after this many seconds (L16). A rule may set its
-            own value.
+        patience: A rival under pressure gives up if it is not ready after this many seconds (law L16). A rule may set
+            its own value.
         trace: True to keep records of all events, for ``trace`` and ``explain``; or a function to call with each record.
         journal: A function, e.g. a `Journal`. It receives each event and each `Taken` record, with its time (seconds).
 
@@ -362,4 +362,6 @@ class Context:
 
 def _check_seconds(patience: object) -> None:
     if isinstance(patience, bool) or not isinstance(patience, (int, float)) or not 0 <= patience < math.inf:
-        raise DeclarationError(f"patience={patience!r} must be 0 s or more, e.g. patience=1.0")
+        raise DeclarationError(
+            f"patience={patience!r} must be a finite number of seconds, 0 or more, e.g. patience=1.0"
+        )

@@ -1,4 +1,4 @@
-"""How a run ended, according to the value that its function returned or the exception that it raised (L18)."""
+"""How a run ended, according to the value that its function returned or the exception that it raised (law L18)."""
 
 from __future__ import annotations
 

@@ -54,7 +54,7 @@ class Functions:
             self.plain.start(ctx)
 
     def finish(self, ctx: RuleContext, result: Any, exception: BaseException | None) -> None:
-        """Report to the engine how a run has ended (L18)."""
+        """Report to the engine how a run has ended (law L18)."""
         runner = self._runner
         if ctx.run in self.running:
             del self.running[ctx.run]

@@ -1,4 +1,4 @@
-"""A journal of an engine's events, and the replay of a journal: the same events give the same effects (L24)."""
+"""A journal of an engine's events, and the replay of a journal: the same events give the same effects (law L24)."""
 
 from __future__ import annotations
 

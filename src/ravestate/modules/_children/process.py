@@ -28,7 +28,7 @@ LOADING = 120.0
 """A model may take this many seconds to load."""
 
 LINGER = 60.0
-"""A process without users stays loaded for this many seconds, if its last user asked `drop` to let it linger."""
+"""A process that no code uses stays loaded for this many seconds, if the last call of `drop` had `linger`."""
 
 SERVER = Path(__file__).with_name("serve.py")
 

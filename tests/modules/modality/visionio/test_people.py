@@ -59,6 +59,15 @@ def test_no_person_is_recognised_if_two_people_are_equally_near(graph: Memory) -
     assert do(graph, lambda g: people.nearest(g, vector("obama3"), 0.55)) is None
 
 
+def test_no_person_is_recognised_if_a_second_person_is_about_as_near_but_beyond_the_threshold(graph: Memory) -> None:
+    def file(graph: Graph) -> None:
+        for name, distance in (("Ada", 0.44), ("Bob", 0.46)):
+            people.keep(graph, graph.ensure("Person", {"name": name}), [(1.0, (distance, *[0.0] * 127))], 8)
+
+    do(graph, file)
+    assert do(graph, lambda g: people.nearest(g, [0.0] * 128, 0.45)) is None
+
+
 def test_keep_skips_views_that_are_known_and_drops_the_oldest_views(graph: Memory) -> None:
     assert keep(graph, "Barack", "obama2", "obama2_32bit")[1] == 1
     person, filed = keep(graph, "Barack", *OBAMA, most=3)

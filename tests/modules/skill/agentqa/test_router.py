@@ -35,7 +35,7 @@ def test_a_match_has_the_nearest_example_with_a_score_and_a_margin(router: Route
 def test_a_miss_names_the_nearest_topic_and_the_reason_against_it(router: Router) -> None:
     found = router.route("what are you up to this evening")
     assert isinstance(found, Miss)
-    assert "is nearest to " in found.reason and "but nearer to what is not about me (" in found.reason
+    assert "the topic nearest to " in found.reason and "but an example that is not about me is nearer (" in found.reason
 
 
 def test_the_first_sentence_with_a_topic_decides(router: Router) -> None:

@@ -19,6 +19,7 @@ from ravestate.language.sentences import sentences as sentences_of
 
 from .answer import YesNo, yesno_of
 from .clause import Clause
+from .closing import Closing, closing_of
 from .contrast import Contrast, contrasts_of
 from .inquiry import question_of
 from .introduction import Introduction, introductions_in
@@ -81,6 +82,8 @@ class Analysis:
     """The triples, with flags that say whether they are denied, past, hearsay and so on."""
     contrasts: tuple[Contrast, ...] = ()
     """The contrasts, also in texts without a verb: *Leipzig, not Leeds*."""
+    closing: Closing | None = None
+    """The question or request at the end, if the utterance has other sentences before it."""
     acts: Mapping[str, Match] = field(default_factory=dict[str, Match])
     """Class in ``acts.yaml``, such as ``greeting`` → the best match of a sentence for this act."""
     feelings: Mapping[str, Match] = field(default_factory=dict[str, Match])
@@ -158,6 +161,8 @@ def analyse(
         question = question_of(tree, parsed)
         # The normal form may add question marks to the user's text. These are guesses, so do not use them here.
         yesno = yesno_of(normal.text if "?" in text else normal.text.replace("?", "."))
+    closing = closing_of(tree, sentences)
+    meant = [closing.text] if closing is not None and closing.remarks else sentences
     return Analysis(
         text=text,
         normal=normal,
@@ -170,10 +175,11 @@ def analyse(
         sentences=sentences,
         statements=statements,
         contrasts=contrasts_of(repaired(tree)),
+        closing=closing,
         acts=acts(sentences),
         feelings=feelings(sentences, names),
         asks=_by_name(bundled_matcher("asks").match_all(sentences)),
-        move=bundled_moves().move(sentences, asks=question is not None or "?" in text),
+        move=bundled_moves().move(meant, asks=question is not None or "?" in text),
         intents=_by_name(designed.match_all(sentences), ":") if designed else {},
     )
 

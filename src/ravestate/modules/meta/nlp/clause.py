@@ -295,8 +295,6 @@ class Clause:
         him = [] if own_aim else self.tree.children(above, "dobj", "dative")
         if verb.dep in ("xcomp", "ccomp") and not self._inherited and him and him[0].index < verb.index:
             return [_WE] if head._is_lets else [part for part, _ in self._written(him)]
-        if head._agents:
-            return [part for part, _ in self._written(head._agents)]
         return head.subjects
 
     def _unsaid(self) -> list[Part]:

@@ -190,8 +190,6 @@ def _span(tree: Tree, start: int) -> list[Word]:
     for word in tree.words[start:]:
         if word.pos not in _INNER and not (word.pos == "ADP" and (not found or word.low == "of")):
             break
-        if found and word.pos == "PRON" and found[-1].pos in _NOUNS and found[-1].dep != "poss":
-            break
         found.append(word)
     rest = tree.words[start + len(found) :]
     alone = not found and rest[:1] and (len(rest) == 1 or rest[1].pos in ("PUNCT", "CCONJ"))

@@ -44,7 +44,6 @@ _REPORTING = (
 """Verbs before a question word that stands for a clause: *he knows why*, *that is how*."""
 _BEFORE_TAG = word_set("here there me you him her them us")
 """After one of these words, as after a noun or an adjective, *right* is a question tag even without a comma."""
-_SUBJECTS = word_set("i he she we they it")
 _NOMINAL = ("PRON", "DET", "NOUN", "PROPN")
 _TAGS = word_set("right correct huh eh yes no ok okay")
 
@@ -104,10 +103,9 @@ def _kind(tree: Tree, words: Sequence[Word], clauses: Sequence[Clause]) -> Quest
         return kind
     if not words or asked or (stated and "any" in low):  # as in "you know any songs"
         return QuestionWord.YES_NO if low or asked else None
-    denied = low[0] in AUXILIARIES and low[1:2] == ["n't"] and words[2:3] and words[2].pos in _NOMINAL
-    if (likely and denied) or _lacks_auxiliary(words, clauses):
-        return QuestionWord.YES_NO
-    if low[-2:] == ["or", "not"] and not {"if", "whether"} & set(low):
+    after = words[2:] if low[1:2] == ["n't"] else words[1:]
+    inverted = low[0] in AUXILIARIES and len(after) > 1 and after[0].pos in _NOMINAL  # as in "do dogs dream"
+    if (likely and inverted) or _lacks_auxiliary(words, clauses):
         return QuestionWord.YES_NO
     bare = low[-2:] in (["and", "you"], ["and", "yours"]) or low[0] in _ANY or low[1:2] == ["any"]
     return QuestionWord.YES_NO if bare or _has_tag(tree, words) else None
@@ -137,8 +135,6 @@ def _lacks_auxiliary(words: Sequence[Word], clauses: Sequence[Clause]) -> bool:
         return rest[-1].pos in ("ADJ", "ADV")
     if first.low != "you" or not rest:
         return False
-    if rest[0].low == "got":
-        return len(rest) > 1 and rest[1].low in ("a", "an", "any", "some", "my")
     verbs = [word for word in rest if word.pos in VERBAL]
     if not verbs:
         return rest[-1].pos in ("ADJ", "ADV") and not _NO_PREDICATE & {word.low for word in rest}
@@ -196,8 +192,6 @@ def _opens_question(
         return False
     if any(clause.inverted for clause in clauses) or second in AUXILIARIES:
         return True
-    if first.low == "when" and second in _SUBJECTS and not asked:
-        return False  # as in "when I was small I had a kite"
     low = [word.low for word in part]
     addressed = second == "you" or (
         kind_at(part, 0) is QuestionWord.AMOUNT and low[2:3] == ["you"] and "are" not in low
@@ -215,8 +209,6 @@ def _opens_question(
     if asked or nice or (first.low == "what" and second in ("a", "an")):
         return asked and not (nice and first.low == "what" and part[-1].pos in VERBAL)  # as in "how nice of you"
     if clause is None or clause.unknown is None:
-        if exclaims and first.low == "what":  # as in "what nonsense!"
-            return False
         return len(part) < 4 or (not exclaims and kind_at(part, 0) is QuestionWord.AMOUNT)
     begins = clause.verb.dep in ("ROOT", "ccomp") and clause.unknown.top in clause.own_subjects  # as in "what happened"
     return begins or not clause.own_subjects

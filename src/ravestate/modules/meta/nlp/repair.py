@@ -9,7 +9,7 @@ from ravestate.language.contractions import word_set
 
 from .contrast import join_contrasts
 from .question_word import AUXILIARIES, QUESTION_WORDS
-from .tree import SUBJECTS, Tree, Word
+from .tree import Tree, Word
 
 _NEGATIONS = ("n't", "not", "nt")
 _BE = ("is", "are", "was", "were")
@@ -94,8 +94,6 @@ def _make_verb(tree: Tree, words: list[Word], auxiliary: Word) -> None:
         return
     if auxiliary.low == "do" and (place > 2 or subject.tag != "NNS"):
         return  # as in "do your math homework"
-    if tree.children(verb, *SUBJECTS) or (verb.dep != "ROOT" and tree.head(verb) != auxiliary):
-        return
     words[verb.index] = replace(verb, pos="VERB", tag="VB")
     _reroot(tree, words, auxiliary, verb, subject, "aux")
 
@@ -108,9 +106,6 @@ def _make_passive(tree: Tree, words: list[Word], be: Word) -> None:
             _reroot(tree, words, be, participle, tree.head(participle), "auxpass")
         elif be.low in _BE and be.dep == "ROOT" and participle.tag == "VBG" and tree.head(participle).dep == "nsubj":
             _reroot(tree, words, be, participle, tree.head(participle), "aux")
-    for participle in tree.children(be, "advcl") if be.low in _BE and be.dep == "ROOT" else ():
-        if participle.tag == "VBG" and nouns and tree.before(participle) == nouns[-1] and nouns[-1].dep == "nsubj":
-            _reroot(tree, words, be, participle, nouns[-1], "aux")
 
 
 def _make_copula(tree: Tree, words: list[Word], short: Word) -> None:
@@ -122,8 +117,6 @@ def _make_copula(tree: Tree, words: list[Word], short: Word) -> None:
     if short.dep != "case" or owner.dep != "poss" or named.dep != "ROOT" or owner.pos != "NOUN":
         return
     if named.pos != "PROPN" and not article:
-        return
-    if any(word.pos in ("VERB", "AUX") for word in tree.subtree(named)):
         return
     for word, dep, head in ((short, "ROOT", short), (owner, "nsubj", short), (named, "attr", short)):
         words[word.index] = replace(word, dep=dep, head=head.index, pos="AUX" if word == short else word.pos)

@@ -284,7 +284,8 @@ class EmbeddedStore:
             log.warning("memory %s: %s: %s", self._path, what, kept)
 
     def rest(self) -> None:
-        """Purge the file, unless a purge has failed since the last deletion: every pause would log another warning."""
+        """Purge the file, unless a purge has failed since the last deletion. Otherwise, every pause would log another
+        warning."""
         if not self._has_failed:
             self.purge()
 

@@ -20,7 +20,7 @@ _last = 0
 
 
 def _next_id(type: str) -> str:
-    """Return an id that is greater than earlier ones, so that sorting by id sorts nodes by age."""
+    """Return a new id. Among nodes of one type, sorting by id sorts by age."""
     global _last  # all threads and contexts of the process share one series of ids
     with _lock:
         _last = max(_last + 1, time.time_ns() // 1000)
@@ -31,12 +31,14 @@ def _next_id(type: str) -> str:
 class Node:
     """A thing that the agent knows: a type and properties. It is immutable; `with_properties` returns a changed copy.
 
-    A new node has its id from the start, so a rule may save and relate it without waiting.
+    A new node already has its id. So a rule can save it and add relations to it without waiting for the memory's
+    answer.
 
     Args:
         type: The name of the node's type: ``Person``.
         properties: Name of a property → its value. Saving the node removes a property that is None.
-        id: The node's id, ``Type:number``. Default: a new id; the numbers grow with time.
+        id: The node's id: its type, a colon and a hexadecimal number. Default: a new id. Newer ids have greater
+            numbers.
 
     Example:
         >>> ada = Node("Person", {"name": "Ada"})
@@ -67,7 +69,8 @@ class Node:
         """Return the value of a property."""
         value = self.properties.get(name)
         if value is None:
-            raise KeyError(f"{self.id} has no {name}; it has {', '.join(self.properties) or 'nothing'}")
+            known = [key for key, value in self.properties.items() if value is not None]
+            raise KeyError(f"{self.id} has no {name}; it has {', '.join(known) or 'nothing'}")
         return value
 
     def __repr__(self) -> str:

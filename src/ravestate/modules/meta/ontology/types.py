@@ -191,7 +191,7 @@ def _as_stored(what: str, kind: Kind, value: Value) -> Any:
             pass
     if kind == "date" and isinstance(value, date) and not isinstance(value, datetime):
         return value.isoformat()
-    raise RuleError(f"{what} is of kind {kind}, not {short(value)}: write for example {_EXAMPLES[kind]}")
+    raise RuleError(f"{what} is of kind {kind}, not {short(value, 60)}: write for example {_EXAMPLES[kind]}")
 
 
 def _as_loaded(what: str, kind: Kind, value: Any) -> Value:

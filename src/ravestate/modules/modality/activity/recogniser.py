@@ -33,7 +33,7 @@ RIDGE = 0.05
 SPREAD = 0.8
 """The deviations of a taught activity, relative to those of an average activity."""
 FAVOUR = 0.5
-"""This is subtracted from the cost of a taught activity, to give it a head start (see `_compared`)."""
+"""This is subtracted from the cost of a taught activity, to give the activity a head start (see `_compared`)."""
 LIMIT = 4.0
 """A movement up to this distance from a taught activity may belong to it (mean squared deviation of the features)."""
 REMEMBERED = 64

@@ -15,7 +15,7 @@ if TYPE_CHECKING:
 RATE = 20.0
 """The number of frames per second of a normalised movement."""
 VISIBLE = 0.5
-"""A landmark with a lower visibility counts as invisible."""
+"""A landmark with a lower visibility than this counts as invisible."""
 PRESENT = 0.5
 """The minimum share of frames in which a joint must be visible."""
 FEWEST = 8

@@ -83,7 +83,7 @@ for each in SIGNALS:
 
 
 @module.rule(
-    when=felt.changed.max_age(None).detached(),  # detached, so that the emoji does not exclude an answer (L10, L19)
+    when=felt.changed.max_age(None).detached(),  # detached, so that the emoji does not exclude an answer (law L10)
     writes=rawio.output,
     until=rawio.input.changed | felt.changed,  # the user speaks, or a later feeling shows
     detached=True,

@@ -21,7 +21,7 @@ class Face:
 
 
 class Camera(Protocol):
-    """The camera of a user. The agent asks for each picture, so it gets no more pictures than it can look at.
+    """The camera of a user. The agent asks for each picture, so the agent gets only as many pictures as it can look at.
 
     A platform whose users have cameras, for example a web page, puts this object into `rawio.camera`. A module that
     sees asks it for pictures.

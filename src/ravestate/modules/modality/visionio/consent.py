@@ -32,7 +32,7 @@ ANSWERED = 60.0
     background=True,
 )
 async def ask_leave(ctx: rs.RuleContext) -> rs.Resign | None:
-    """Ask a person who has told their name whether the agent may remember their face."""
+    """Ask a person who has given their name whether the agent may remember their face."""
     if not ctx.settings.ask:
         return rs.Resign("visionio.ask is off")
     memory = ctx[ontology.memory]

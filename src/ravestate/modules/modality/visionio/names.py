@@ -39,7 +39,7 @@ class Settings(rs.Settings):
     threshold: Annotated[float, Field(gt=0, le=2)] = 0.55
     """The maximum Euclidean distance of two vectors of the same person."""
     sure: Annotated[int, Field(ge=1, le=20)] = 3
-    """The agent decides whom it sees when this many vectors in a row agree."""
+    """The agent decides whose face it sees when this many vectors in a row agree."""
     quality: Share = 0.3
     """The minimum visibility of a face (0 to 1) for its vector to count."""
     gone_after: Seconds = 4.0
@@ -49,7 +49,7 @@ class Settings(rs.Settings):
     most: Annotated[int, Field(ge=1)] = 8
     """The number of vectors that memory keeps for each person."""
     ask: bool = True
-    """Whether the agent asks people who tell their names if it may remember their faces. It keeps a face only after a
+    """Whether the agent asks people who give their names if it may remember their faces. It keeps a face only after a
     yes."""
 
 
@@ -83,7 +83,7 @@ left: rs.Signal[Visitor] = module.signal("left", payload=Visitor)
 """A person has left. The payload is the visitor's last record."""
 
 named: rs.Signal[ontology.Node] = module.signal("named", payload=ontology.Node)
-"""A person whom the agent sees has told their name. The payload is their node, with the name."""
+"""A person whom the agent sees has given their name. The payload is their node, with the name."""
 
 asking: rs.Slot[Question | None] = module.slot("asking", None, type=cast("type[Question]", object))
 """The agent's open question whether it may remember a face; None if there is none."""

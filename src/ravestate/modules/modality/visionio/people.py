@@ -21,7 +21,7 @@ MERGE = 0.45
 """Two faces up to this distance surely belong to one person. If two people have the same name and such faces, memory
 merges them."""
 MARGIN = 0.05
-"""The second nearest person must be this much farther away than the nearest one. Otherwise, the agent recognises
+"""If the second nearest person is less than this much farther away than the nearest one, the agent recognises
 nobody."""
 
 
@@ -36,7 +36,7 @@ class Nearest:
 def nearest(graph: Graph, vector: Sequence[float], threshold: float) -> Nearest | None:
     """Return the person with the nearest vector.
 
-    Return None if nobody is within `threshold`, or if two people are about equally near.
+    Return None if nobody is within `threshold`, or if a second person is about as near (`MARGIN`).
     """
     faces = stored(graph)
     ranked = sorted((dist(vector, known), number) for number, (_, known) in enumerate(faces))
@@ -45,7 +45,7 @@ def nearest(graph: Graph, vector: Sequence[float], threshold: float) -> Nearest 
     distance, first = ranked[0]
     person = owner(graph, faces[first][0])
     for other, number in ranked[1:]:
-        if other > min(threshold, distance + MARGIN):
+        if other > distance + MARGIN:
             break
         rival = owner(graph, faces[number][0])
         if person is None or (rival is not None and rival.id != person.id):
@@ -126,7 +126,7 @@ def doubles(graph: Graph, person: Node, vectors: Sequence[Vector]) -> list[Node]
 
 
 def forget_faces(graph: Graph, person: Node) -> int:
-    """Remove a person's faces from memory. Return how many there were. None of their bytes stay in the file."""
+    """Remove a person's faces from memory. Return how many there were. The memory file keeps no bytes of them."""
     faces = faces_of(graph, person) if graph.get(person.id) is not None else []
     for face in faces:
         graph.forget(face)

@@ -1,4 +1,4 @@
-"""The people in front of the camera. Functions find out from their faces who comes and who leaves. Pure."""
+"""The people in front of the camera, and functions that find out from faces which people come and leave. Pure."""
 
 from __future__ import annotations
 

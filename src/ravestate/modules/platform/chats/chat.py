@@ -313,7 +313,7 @@ class Chat:
         return self._mute or self._state == "gone"
 
     def _cause(self) -> Entry | None:
-        """Return the message that the agent answers now: the oldest message without an answer (L12)."""
+        """Return the message that the agent answers now: the oldest message without an answer (law L12)."""
         answered = {answer.cause for answer in self._said}
         waiting = (entry for entry in self._open if entry.n not in answered)
         return next(waiting, None) or self._hearing or (self._open[-1] if self._open else None)

@@ -11,7 +11,7 @@ if TYPE_CHECKING:
 
 
 async def agent_left(context: Context, user: Coroutine[Any, Any, object]) -> bool:
-    """Wait until a coroutine that follows the user returns, or until the agent stops its context.
+    """Wait until the coroutine `user` ends (the user has left), or until the agent stops its context.
 
     Returns:
         Whether the agent has stopped its context. If so, the coroutine is cancelled.

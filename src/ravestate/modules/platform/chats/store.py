@@ -20,7 +20,7 @@ SEEN = 3 * 24 * 3600.0
 """How many seconds the store remembers the keys of messages. Messengers repeat a message for at most a day."""
 
 TRIES = 3
-"""The store drops a message after this many crashes during it, because the message may cause them."""
+"""The store drops a message after this many crashes while the agent handled it, because the message may cause them."""
 
 PARTING = ("stop", "forget")
 """The commands after which the agent treats the person as new in the chat."""

@@ -54,7 +54,7 @@ words: rs.Slot[str] = module.slot("words", "", type=str, always=True, input=True
 """The last words that the robot understood."""
 
 direction: rs.Slot[float | None] = module.slot("direction", None, input=True)
-"""The direction of the speaker (radians, positive to the left); None if nobody has spoken yet."""
+"""The direction of the person who speaks (radians, positive to the left); None if nobody has spoken yet."""
 
 expression: rs.Slot[str] = module.slot("expression", "neutral", type=str)
 """The face: ``neutral``, ``happy``, ``shy``, ``surprised``, ``affectionate``, ``sad`` or ``thinking``."""

@@ -1,4 +1,4 @@
-"""Check the slots of an agent: do other nodes use their topics, and do the types match? Say how to fix faults."""
+"""Check whether other nodes use the topics of an agent's slots, and whether the types match. Say how to fix faults."""
 
 from __future__ import annotations
 
@@ -15,7 +15,7 @@ from .slots import Binding
 
 KINDS = {"subscriber": "msg", "publisher": "msg", "service": "srv", "action": "action"}
 OTHERS = {"subscriber": "publishers", "publisher": "subscribers", "service": "servers", "action": "servers"}
-"""Kind of slot → the other end that the slot needs, by its name in the graph."""
+"""Kind of slot → the graph's word for the nodes that the slot needs at the other end."""
 PLACES = {"subscriber": "topics", "publisher": "topics", "service": "services", "action": "actions"}
 
 LOOKS = 8

@@ -404,7 +404,7 @@ def _cancel_with_writers(ctx: rs.RuleContext, node: Node, slot: ActionSlot) -> N
 
 
 def _looking(condition: Condition) -> Condition:
-    """Return a condition that is met whenever `condition` is met, but consumes nothing (L19)."""
+    """Return a condition that is met whenever `condition` is met, but consumes nothing (law L19)."""
     if isinstance(condition, Compound):
         return type(condition)(tuple(_looking(part) for part in condition.parts))
     if isinstance(condition, (Signal, Constraint)):

@@ -20,7 +20,7 @@ from .sound import Samples, samples
 BEFORE = 12
 """A turn includes this many chunks before its onset, so that a soft beginning is not cut off."""
 ONSET = 2
-"""This many successive chunks of speech are an onset. A click is shorter."""
+"""This many successive chunks of speech are an onset. A click lasts for fewer chunks."""
 STAY = 0.7
 """While the user speaks, the threshold of speech is multiplied by this factor, so that soft chunks continue the
 speech."""

@@ -12,7 +12,7 @@ _UNSPEAKABLE = re.compile(
     "[\U0001f000-\U0001faff\u2600-\u27bf\u2b00-\u2bff\u2300-\u23ff\u200d\u20e3\ufe0e\ufe0f\U000e0020-\U000e007f*_`#]"
 )
 SHORTEST = 12
-"""A sentence with fewer characters is spoken together with the next sentence, if there is one."""
+"""A sentence with fewer characters than this is spoken together with the next sentence, if there is one."""
 
 
 def sentences(text: str, begin: int = 0, *, whole: bool) -> Iterator[tuple[int, str]]:

@@ -75,7 +75,7 @@ def goal(
         reads: The slots that the function `say` reads.
         when: A further condition for a pursuit, e.g. ``interloc.users.holds(bool)``.
         unless: A condition that prevents a pursuit. It may contain only ``slot.holds(...)``.
-        priority: A factor on the utility of the goal's rule (L9); the goal with the greatest utility goes first.
+        priority: A factor on the utility of the goal's rule (law L9); the goal with the greatest utility goes first.
         cooldown: Seconds from one try to the next; also the seconds that the user has for an answer.
         done: The event that makes the goal a success, at any time: a signal, a condition, or a regular expression of
             whole words for the user's answer. If it is None, the first try makes the goal a success.

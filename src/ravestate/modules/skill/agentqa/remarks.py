@@ -72,6 +72,8 @@ def act_in(analysis: Analysis, life: Life) -> Remark | None:
                 and (is_playful(analysis.text) or _of_oneself(found.text, analysis))
             ):
                 continue
+            if found is not None and analysis.closing is not None and analysis.closing.outweighs(found.text):
+                continue
             if found is not None and sure and not (aside and _YOU.isdisjoint(plain(found.text).split())):
                 return Remark(name, plain(found.text))
     return None

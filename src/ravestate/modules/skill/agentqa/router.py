@@ -158,7 +158,7 @@ def _in_full(question: str) -> str:
 
 def _reason(text: str, best: language.Match, others: Sequence[language.Match]) -> str:
     nearest = best if best.name or not others else others[0]
-    said = f"{plain(text)!r} is nearest to {nearest.name} ({nearest.score:.2f}, {nearest.example!r})"
+    said = f"the topic nearest to {plain(text)!r} is {nearest.name} ({nearest.score:.2f}, {nearest.example!r})"
     if nearest is best:
-        return f"{said}, but not near"
-    return f"{said}, but nearer to what is not about me ({best.score:.2f}, {best.example!r})"
+        return f"{said}, but it is not near enough"
+    return f"{said}, but an example that is not about me is nearer ({best.score:.2f}, {best.example!r})"

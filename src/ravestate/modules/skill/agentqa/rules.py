@@ -95,7 +95,8 @@ async def understand(ctx: rs.RuleContext) -> rs.Resign | None:
     if isinstance(found, Match):
         found = replace(found, returned=True)
     else:
-        found = await asyncio.to_thread(route, seen.normal.text, question=seen.question is not None)
+        text = seen.normal.text if seen.closing is None else seen.closing.text
+        found = await asyncio.to_thread(route, text, question=seen.question is not None)
     if isinstance(found, Miss):
         return rs.Resign(found.reason)
     leave = "permit" in seen.asks and seen.question is not QuestionWord.OBJECT  # "what can I call you" asks for a name

@@ -38,7 +38,7 @@ def _silent(speaking: bool) -> bool:
 
 
 @module.rule(
-    when=idle.impatient.max_age(0.0) & rawio.speaking.holds(_silent),  # at any later time, the answer may have come
+    when=idle.impatient.max_age(0.0) & rawio.speaking.holds(_silent),  # `max_age`: later, the answer may have come
     reads=(filled, waiting),
     writes=(verbaliser.intent, filled, promised),
 )

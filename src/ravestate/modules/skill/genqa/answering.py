@@ -7,6 +7,7 @@ import re
 import threading
 from collections.abc import Iterable, Sequence
 from dataclasses import dataclass
+from functools import cache
 from pathlib import Path
 
 from ravestate.language import Reranker
@@ -15,7 +16,7 @@ from ravestate.modules.meta.nlp import QuestionWord
 
 from .confidence import confidence, in_talk
 from .index import Found, Index
-from .lexicon import variants_of
+from .lexicon import lexicon, variants_of
 from .passages import LONGEST
 from .question import Parse, Question, as_question
 from .shipped import bring_up
@@ -34,9 +35,8 @@ SHORT = 24
 """The maximum number of passages from a document that the thread is about. These need no words of the question."""
 LEVEL = 0.8
 """Two scores count as equal if they differ by less than this."""
-COMMON, COMMON_KIND = 20_000, 2_000
-"""The search skips a word that is in more passages than this, unless all words are so common. `COMMON_KIND` is for
-words of `Question.kinds`."""
+COMMON = 20_000
+"""The search skips a word that is in more passages than this, unless all words are so common."""
 NAMES, KINDS = 0.4, 0.7
 """The share of words to assume if a follow-up has only names: `KINDS` for a passage with a word of `Question.kinds`,
 `NAMES` for other passages."""
@@ -179,54 +179,46 @@ class Answerer:
         """Return the passages that meet the qualifiers, each with its share of the question's words, best first."""
         assert self._stems is not None  # `_opened` has set it
         asked = [variants_of(word) for word in question.words[:WORDS]]
-        groups = (*asked, question.kinds[:WORDS], *question.needs)
-        known_words = list(dict.fromkeys(word for group in groups for word in group))
-        stem_of = {word: stems for word, stems in zip(known_words, self._stems(*known_words), strict=True) if stems}
+        searched = list(dict.fromkeys(word for group in (*asked, question.kinds[:WORDS]) for word in group))
+        words = list(dict.fromkeys(word for group in (searched, *question.needs) for word in group))
+        stem_of = {word: stems for word, stems in zip(words, self._stems(*words), strict=True) if stems}
         known = index.frequencies(sorted({stem for stems in stem_of.values() for stem in stems}))
+        # An upper bound for the number of passages with each word.
+        counts = {word: min(known.get(stem, 0) for stem in stems) for word, stems in stem_of.items()}
 
-        def standing(word: str) -> int:
-            """Return an upper bound for the number of passages with a word."""
-            return min(known.get(stem, 0) for stem in stem_of[word])
-
-        searched = [word for word in dict.fromkeys(w for g in groups[: len(asked) + 1] for w in g) if word in stem_of]
-        rare = [word for word in searched if standing(word) <= (COMMON_KIND if word in question.kinds else COMMON)]
+        searched = [word for word in searched if word in counts]
+        rare = [word for word in searched if counts[word] <= COMMON]
         in_view = [each for title in titles for each in index.passages(title, SHORT)]
         found = [*in_view, *index.search(rare or searched, RETRIEVED, without=question.avoids)]
         # Many passages that repeat the rarest word may rank above a passage that has all words.
         found = list(dict.fromkeys([*found, *index.search_all(asked, RETRIEVED, without=question.avoids)]))
-        avoided = {stem for stems in self._stems(*question.avoids) for stem in stems}
-
-        def has(have: set[str], forms: Iterable[str]) -> bool:
-            return any(have.issuperset(stem_of[form]) for form in forms if form in stem_of)
 
         size = index.size()
-        weights = [
-            (forms, math.log1p(size / (max(map(standing, known_forms)) + 0.5)), word.lower() in question.given)
-            for word, forms in zip(question.words, asked, strict=False)
-            if (known_forms := [form for form in forms if form in stem_of])
-        ]
-
-        if question.follows:
-            weights = [each for each in weights if not each[2]]
-        total = sum(weight for _, weight, _ in weights)
-        retrieved: list[tuple[float, Found]] = []
-        stems_of = [set(stems) for stems in self._stems(*(f"{each.title} {each.text} {each.hints}" for each in found))]
+        weights: list[tuple[tuple[str, ...], float]] = []
+        for word, forms in zip(question.words, asked, strict=False):
+            often = max((counts[form] for form in forms if form in counts), default=None)
+            if often is not None and not (question.follows and word.lower() in question.given):
+                weights.append((forms, math.log1p(size / (often + 0.5))))
+        total = sum(weight for _, weight in weights)
+        avoided = {stem for stems in self._stems(*question.avoids) for stem in stems}
         counted = variants_of(question.counted.lower()) if question.counted else ()
-        for each, have in zip(found, stems_of, strict=True):
-            covered = (
-                sum(weight for forms, weight, _ in weights if has(have, forms)) / total
-                if total
-                else KINDS
-                if has(have, question.kinds)
-                else NAMES
-            )
-            fits = (
+        retrieved: list[tuple[float, Found]] = []
+        stems_of = self._stems(*(f"{each.title} {each.text} {each.hints}" for each in found))
+        for each, have in zip(found, map(set, stems_of), strict=True):
+
+            def has(forms: Iterable[str], have: set[str] = have) -> bool:
+                return any(have.issuperset(stem_of[form]) for form in forms if form in stem_of)
+
+            covered = KINDS if has(question.kinds) else NAMES
+            if total:
+                covered = sum(weight for forms, weight in weights if has(forms)) / total
+            if (
                 (covered >= ENOUGH or not total or each in in_view)
                 and have.isdisjoint(avoided)
+                and all(map(has, question.needs))
                 and _can_answer(question, each)
                 and (not counted or any(form in each.text.lower() for form in counted))
-            )
-            if fits and all(has(have, need) for need in question.needs):
+            ):
                 retrieved.append((covered, each))
         # The sort is stable, so passages with equal shares stay in the order of BM25.
         return sorted(retrieved, key=lambda each: -each[0])
@@ -266,49 +258,37 @@ def _readable(found: Found) -> str:
     return text[:LONGEST]
 
 
-_NUMBER = re.compile(
-    r"\d|\b(?:no|none|one|two|three|four|five|six|seven|eight|nine|ten|eleven|twelve|twenty|dozen|hundred|once|twice|half)\b",
-    re.IGNORECASE,
-)
+_HOW_MANY = re.compile(r"\bhow (?:many|much) ")
+_NAME = re.compile(r"(?<=[^.!?] )[A-Z][^\W_]+")
 
 
-_CAUSE = re.compile(
-    r"\b(?:because|since|so|due|for|to|as|in|after|from|by|reason|causes?|caused|that|when)\b", re.IGNORECASE
-)
-_AGE = re.compile(r"\b(?:aged?|old|older|born|founded|built|opened|established|formed|since|dates?)\b")
-_TIME = re.compile(
-    r"\b(?:century|spring|summer|autumn|winter|night|day|morning|evening|noon|\w+day|year|month|week|after|before|when|during|every|"
-    r"once|ago|January|February|March|April|May|June|July|August|September|October|November|December)s?\b"
-)
-
-
-_IS = re.compile(r"\b(?:am|is|are|was|were|be|been|being|belongs?|lies?|counts?|means?|called)\b", re.IGNORECASE)
-
-_ENDED = re.compile(r"\b(?:reigned|ruled|beheaded|abdicated|died|from (?:AD )?\d{2,4} (?:BC )?to (?:AD )?\d{2,4})\b")
+@cache
+def _any_of(name: str) -> re.Pattern[str]:
+    """Return a pattern for any of the words and patterns of a list in ``words.yaml``."""
+    return re.compile(rf"\b(?:{'|'.join(lexicon()['answers'][name].split())})\b", re.IGNORECASE)
 
 
 def _can_answer(question: Question, found: Found) -> bool:
     """Return whether a passage has the kind of thing that the question asks for, such as a number or a place."""
-    asked = question.text.lower()
-    if question.kind is QuestionWord.AMOUNT and ("how many " in asked or "how much " in asked):
-        return _NUMBER.search(found.text) is not None
-    if question.kind is QuestionWord.YES_NO and asked.startswith(("is ", "are ", "was ", "were ")):
-        return _IS.search(found.text) is not None
-    if asked.startswith("who is ") and _ENDED.search(found.text):
-        return False
-    if asked.startswith(("what makes ", "what causes ", "what made ")):
-        return _CAUSE.search(found.text) is not None
-    if "how old " in asked:
-        return _AGE.search(found.text) is not None
-    if question.kind is QuestionWord.TIME and not re.search(r"\d", found.text):
-        return _TIME.search(found.text) is not None
-    names = [*re.findall(r"(?<=[^.!?] )[A-Z][^\W_]+", found.text), *found.title.split()]
-    if question.kind is QuestionWord.PERSON and re.search(r"\bwho (?!is|was|are|were)", asked):
-        return " by " in found.text or any(name.lower() not in asked for name in names)
-    if question.kind is QuestionWord.REASON:
-        return _CAUSE.search(found.text) is not None
-    if question.kind is QuestionWord.PLACE and "where" not in asked:
-        return any(name.lower() not in asked for name in names)
+    asked, kind = question.text.lower(), question.kind
+    needed = ""
+    if kind is QuestionWord.AMOUNT and _HOW_MANY.search(asked):
+        needed = "number"
+    elif kind is QuestionWord.YES_NO and asked.startswith(("is ", "are ", "was ", "were ")):
+        needed = "being"
+    elif kind is QuestionWord.REASON or asked.startswith(("what makes ", "what causes ", "what made ")):
+        needed = "cause"
+    elif "how old " in asked:
+        needed = "age"
+    elif kind is QuestionWord.TIME:
+        needed = "time"
+    if needed:
+        return _any_of(needed).search(found.text) is not None
+    if asked.startswith("who is "):
+        return _any_of("ended").search(found.text) is None
+    does = kind is QuestionWord.PERSON and re.search(r"\bwho (?!is|was|are|were)", asked)
+    if (does and " by " not in found.text) or (kind is QuestionWord.PLACE and "where" not in asked):
+        return any(name.lower() not in asked for name in (*_NAME.findall(found.text), *found.title.split()))
     return True
 
 

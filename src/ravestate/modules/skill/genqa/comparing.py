@@ -11,8 +11,8 @@ from ravestate.modules.meta.nlp.tree import Word
 from .answering import Answer
 from .lexicon import lexicon, variants_of
 from .question import Parse
-from .reckoning import apart, dates_in, focused, measured, of_both
-from .thread import Turn, phrase_of, referents, refers
+from .reckoning import apart, both, dates_in, focused, measured, of_both
+from .thread import Turn, is_noun, phrase_of, referents, refers
 
 _BOTH = ("difference", "together", "total", "altogether")
 """Words that ask about two numbers of the thread together: *what is the difference?*."""
@@ -120,11 +120,7 @@ def _name(heard: Parse, word: Word, thread: Sequence[Turn]) -> str:
     """Return the name of the thing that a noun or a pronoun stands for; empty for other words."""
     if refers(word, heard.asked):
         return next((thing.text for thing in referents(word, thread)), "")
-    if (
-        word.pos not in ("NOUN", "PROPN", "X")
-        or word.dep in ("compound", "nmod", "amod")
-        or word.low in ("one", "ones")
-    ):
+    if not is_noun(word) or word.low in ("one", "ones"):
         return ""
     own = phrase_of(heard.tree, word)
     return "" if any(other.tag in ("WDT", "WP", "WRB") for other in own) else heard.tree.phrase(own)
@@ -141,25 +137,19 @@ def _told(turn: Turn, base: str) -> Answer | None:
 
 def _asked(name: str, base: str, noun: str, ask: Callable[[str], Answer]) -> Answer | None:
     """Ask the documents, and return the best answer with a measure of `name`."""
-    questions = [f"how {base} is {name}?"]
-    if base == "many" or noun:
-        questions = [f"how many {noun or 'people'} does {name} have?"]
-    elif base in _TIMED and (found := begun(name, ask)) is not None:
+    counts = base == "many" or noun
+    if base in _TIMED and not counts and (found := begun(name, ask)) is not None:
         return found
-    answers = [ask(question) for question in questions]
-    right = [found for found in answers if (dates_in if base in _TIMED else measured)(found.text)]
-    return max(right, key=lambda answer: answer.confidence, default=None)
+    answer = ask(f"how many {noun or 'people'} does {name} have?" if counts else f"how {base} is {name}?")
+    return answer if (dates_in if base in _TIMED else measured)(answer.text) else None
 
 
 def begun(name: str, ask: Callable[[str], Answer]) -> Answer | None:
     """Return the answer with the date when `name` was born, founded or built; None if no passage about it has one."""
     answers = [ask(f"when was {name} {done}?") for done in ("born", "founded", "built")]
     bare = name.lower().removeprefix("the ")
-    own = [
-        a
-        for a in answers
-        if dates_in(a.text) and a.text.lower().removeprefix("the ").startswith((bare, "she ", "he ", "it "))
-    ]
+    starts = (bare, "she ", "he ", "it ")
+    own = [a for a in answers if dates_in(a.text) and a.text.lower().removeprefix("the ").startswith(starts)]
     return max(own, key=lambda answer: answer.confidence, default=None)
 
 
@@ -169,5 +159,5 @@ def _values(one: str, other: str, base: str) -> tuple[float, float] | None:
         sign = -1.0 if base == "old" else 1.0  # the thing with the earlier date is older
         days = [sign * dates[0].day.toordinal() for dates in (dates_in(one), dates_in(other)) if dates]
         return (days[0], days[1]) if len(days) == 2 else None
-    pairs = (left.beside(right) for left in measured(one) for right in measured(other))
-    return next((values for values in pairs if values is not None), None)
+    found = both(one, other)
+    return None if found is None else found[:2]

@@ -25,7 +25,8 @@ REMEMBERED = 64
 """The number of parses that are kept."""
 THE_TWO = frozenset(["i", "me", "my", "mine", "myself", "you", "your", "yours", "yourself", "u", "ur"])
 """The pronouns for the user and the agent."""
-_OTHERS = frozenset(["it", "its", "they", "them", "their", "he", "him", "his", "she", "her"])
+SEXES = {"he": "he", "him": "he", "his": "he", "she": "she", "her": "she", "hers": "she"}
+PRONOUNS = frozenset([*SEXES, "it", "its", "they", "them", "their", "there", "this", "that"])
 WH = ("WP", "WP$", "WDT", "WRB")
 FINITE = ("VBZ", "VBP", "VBD", "MD")
 _NAMES = ("GPE", "LOC", "PERSON", "ORG", "FAC", "NORP", "WORK_OF_ART", "EVENT", "PRODUCT", "LANGUAGE")
@@ -101,28 +102,9 @@ def parsed(tree: Tree, entities: Sequence[Entity], kind: QuestionWord | None) ->
     root = next((word for word in asked if word.head == word.index), None)
     if root is not None:
         asked = _alone(tree, root, asked)
-    asked = _without_fillers(asked)
     while asked and (asked[0].pos in ("PUNCT", "INTJ", "SPACE") or asked[0].low in ("so", "well", "but")):
         asked = asked[1:]
     return Parse(tree, tuple(entities), kind, tuple(asked))
-
-
-def _without_fillers(asked: list[Word]) -> list[Word]:
-    """Return the words without *actually*, *anyway*, *strictly speaking* and the like, which ask for nothing."""
-    low = [word.low for word in asked]
-    fillers = {
-        at + place
-        for phrase in words_of("filler_phrases")
-        for at in range(len(low))
-        if low[at : at + len(phrase.split("_"))] == phrase.split("_")
-        for place in range(len(phrase.split("_")))
-    }
-    left = [
-        word
-        for place, word in enumerate(asked)
-        if place not in fillers and not (word.pos == "ADV" and word.low in words_of("fillers"))
-    ]
-    return left if any(word.pos != "PUNCT" for word in left) else asked
 
 
 def _alone(tree: Tree, root: Word, asked: list[Word]) -> list[Word]:
@@ -161,9 +143,8 @@ def as_question(heard: str | Parse) -> Question:
         heard = parse(heard)
     said = [word for word in heard.asked if word.pos != "PUNCT"]
     content = list(dict.fromkeys(part for word in said if _means(word) for part in _parts(word)))
-    words = tuple(word for word in content if word.lower() not in words_of("kinds"))
     kinds = tuple(part for word in said for part in _parts(word) if part.lower() in words_of("kinds"))
-    words = words or tuple(word for word in content if word.lower() in words_of("kinds"))  # "What is time?"
+    words = tuple(word for word in content if word not in kinds) or tuple(content)  # "What is time?"
     reason, doubtful = _declined(heard, said), heard.kind is None
     if not reason and content and all(word.lower() in words_of("moment") for word in content):
         reason = "it is about the moment, which documents do not know"
@@ -192,11 +173,8 @@ def as_question(heard: str | Parse) -> Question:
 
 def _counted(heard: Parse) -> str:
     """Return the noun after *how many*; empty if there is none, or if it is one of the `kinds`."""
-    many = next((word for word in heard.asked if word.low == "many"), None)
-    noun = heard.tree.head(many) if many is not None else None
-    if noun is None or noun.pos != "NOUN" or noun.low in words_of("kinds"):
-        return ""
-    return noun.text
+    nouns = [heard.tree.head(word) for word in heard.asked if word.low == "many"][:1]
+    return next((noun.text for noun in nouns if noun.pos == "NOUN" and noun.low not in words_of("kinds")), "")
 
 
 def is_name(seen: Parse, word: Word) -> bool:
@@ -239,17 +217,15 @@ def _is_anybody(heard: Parse, word: Word) -> bool:
     if word.dep not in ("nsubj", "nsubjpass") or verb.pos not in ("VERB", "AUX") or word.low not in ("you", "i"):
         return False
     helpers = heard.tree.children(verb, "aux")
+    things = [other for other in heard.tree.subtree(verb) if other.pos in ("NOUN", "PROPN")]
     if any(helper.tag == "VBD" for helper in helpers) or verb.tag == "VBD":
         return False
     if verb.dep == "advcl":
         return True
     if heard.kind is QuestionWord.YES_NO and word.low == "you" and any(helper.low == "can" for helper in helpers):
-        return verb.lemma in words_of("anybody") and any(
-            other.pos in ("NOUN", "PROPN") for other in heard.tree.subtree(verb)
-        )
+        return verb.lemma in words_of("anybody") and bool(things)
     if heard.kind not in (QuestionWord.FORM, QuestionWord.PLACE, QuestionWord.TIME, QuestionWord.AMOUNT):
         return any(helper.low in ("must", "may") for helper in helpers)
-    things = [other for other in heard.tree.subtree(verb) if other.pos in ("NOUN", "PROPN")]
     return bool(things) or any(helper.tag == "MD" for helper in helpers)
 
 
@@ -266,15 +242,12 @@ def _qualifiers(heard: Parse) -> tuple[list[tuple[str, ...]], list[str]]:
             before = tree.before(word)
             if not decides and not (before is not None and before.pos == "CCONJ"):  # "why 42 and not 41?"
                 needs.append(("not", "no", "never", "none", "without"))
-        elif word.low in ("before", "after") and any(
-            other.tag not in ("CD", "WDT") for other in tree.children(word, "pobj")
-        ):
+        elif word.low in ("before", "after") and any(o.tag not in ("CD", "WDT") for o in tree.children(word, "pobj")):
             needs.append(tuple(sorted(words_of("order"))))
         elif word.low in words_of("excluding"):
             needs.append(tuple(sorted(words_of("excluding"))))
         elif _is_superlative(tree, word) or word.low in ranks:
-            listed = ("five", "ten") if word.low in words_of("ranks") and _picks_largest(tree, word) else ()
-            needs.append((*variants_of(word.text), *listed))
+            needs.append(variants_of(word.text))
             picked = [other.text for other in _picked(tree, word) if other in heard.asked]
             needs += [variants_of(other) for other in picked]
             if not asked_ranks:
@@ -292,26 +265,17 @@ def _qualifiers(heard: Parse) -> tuple[list[tuple[str, ...]], list[str]]:
 
 def _is_superlative(tree: Tree, word: Word) -> bool:
     """Return whether a word is a superlative. The *most* in *most people* is not a superlative."""
-    before = tree.before(word)
-    quantity = (
-        word.low in ("most", "least") and tree.head(word).pos == "NOUN" and (before is None or before.low != "the")
-    )
-    return word.tag in ("JJS", "RBS") and not quantity
-
-
-def _picks_largest(tree: Tree, rank: Word) -> bool:
-    """Return whether a superlative follows a rank, as in *third longest*. A list of the longest then also has the answer."""
-    after = tree.after(rank)
-    return after is not None and after.tag in ("JJS", "RBS")
+    if word.low in ("most", "least") and tree.head(word).pos == "NOUN":
+        before = tree.before(word)
+        return before is not None and before.low == "the" and word.tag in ("JJS", "RBS")
+    return word.tag in ("JJS", "RBS")
 
 
 def _picked(tree: Tree, rank: Word) -> Iterator[Word]:
     """Yield the content words of the phrase in which a rank picks one of many: *second longest river in Africa*."""
     head = tree.head(rank)
-    if head.pos not in ("NOUN", "PROPN", "ADJ"):
+    if head.pos not in ("NOUN", "PROPN"):
         return
-    if head.pos == "ADJ" and tree.head(head).pos in ("NOUN", "PROPN"):
-        head = tree.head(head)
     for word in tree.subtree(head):
         if _means(word) and word != rank and word.low not in words_of("kinds") | words_of("people") | words_of("ranks"):
             yield word
@@ -324,7 +288,8 @@ def is_vague(question: Question) -> bool:
         >>> is_vague(as_question("Can they fly?")), is_vague(as_question("When did it start to rain?"))
         (True, False)
     """
-    return len(question.words) < 2 and not _OTHERS.isdisjoint(question.text.strip("?").lower().split())
+    others = PRONOUNS - {"there"}
+    return len(question.words) < 2 and not others.isdisjoint(question.text.strip("?").lower().split())
 
 
 def not_asked(heard: Parse, analysis: Analysis) -> str:

@@ -190,11 +190,16 @@ def focused(question: str, answer: str) -> str:
     return ". ".join(sorted(filter(None, parts), key=lambda part: -worth[part]))
 
 
+def both(one: str, other: str) -> tuple[float, float, str] | None:
+    """Return a number of each text, in one unit, and the word for this unit; None if no two measure the same thing."""
+    pairs = ((left, left.beside(right)) for left in measured(one) for right in measured(other))
+    return next(((*values, left.word) for left, values in pairs if values is not None), None)
+
+
 def of_both(one: str, other: str, work_out: Callable[[float, float], float]) -> str:
     """Return the result of `work_out` for one number of each text; empty if no two numbers measure the same thing."""
-    pairs = ((left, left.beside(right)) for left in measured(one) for right in measured(other))
-    found = next(((left, values) for left, values in pairs if values is not None), None)
-    return "" if found is None else f"{_number(work_out(*found[1]))} {found[0].word}".strip() + "."
+    found = both(one, other)
+    return "" if found is None else f"{_number(work_out(*found[:2]))} {found[2]}".strip() + "."
 
 
 # ------------------------------------------------------------------------------------- sums and units
@@ -454,9 +459,8 @@ def _until(asked: re.Match[str], now: time) -> str:
     round_the_clock = 60 * (24 if asked["half"] or asked["name"] or hour > 12 else 12)
     left = (then - 60 * now.hour - now.minute) % round_the_clock
     hours, minutes = (0, left) if asked["unit"] == "minutes" else divmod(left, 60)
-    parts = [
-        f"{count} {noun}{'' if count == 1 else 's'}" for count, noun in ((hours, "hour"), (minutes, "minute")) if count
-    ]
+    counts = {"hour": hours, "minute": minutes}
+    parts = [f"{count} {noun}{'' if count == 1 else 's'}" for noun, count in counts.items() if count]
     return f"That is {' and '.join(parts) or 'right now'}."
 
 

@@ -14,7 +14,7 @@ from ravestate.modules.meta.nlp.tree import Tree, Word
 
 from .answering import Answer
 from .lexicon import words_of
-from .question import FINITE, WH, Parse, is_name, parse
+from .question import FINITE, PRONOUNS, SEXES, WH, Parse, is_name, parse
 
 NUMBERS = ("DATE", "TIME", "CARDINAL", "QUANTITY", "MONEY", "PERCENT", "ORDINAL")
 """The labels of entities that are numbers, not names."""
@@ -27,20 +27,10 @@ REMEMBERED = 120.0
 """Seconds for which later questions may refer to a question."""
 LESS = -0.15
 """The change in log odds from each reading to the next."""
-SEXES = {"he": "he", "him": "he", "his": "he", "she": "she", "her": "she", "hers": "she"}
-PRONOUNS = frozenset((*SEXES, *["it", "its", "they", "them", "their", "there", "this", "that"]))
 _ONES = ("one", "ones", "former", "latter")
-_RANKS = {
-    "first": 0,
-    "second": 1,
-    "third": 2,
-    "fourth": 3,
-    "fifth": 4,
-    "sixth": 5,
-    "last": -1,
-    "latter": -1,
-    "former": -2,
-}
+_RANKS = {name: place for place, name in enumerate(["first", "second", "third", "fourth", "fifth", "sixth"])} | {
+    "last": -1, "latter": -1, "former": -2,
+}  # fmt: skip
 _OWN = ("det", "amod", "compound", "nummod", "poss", "nmod", "quantmod")
 
 
@@ -123,9 +113,7 @@ def turn_of(asked: Parse, found: Answer, at: float) -> Turn:
     new = [*(whole if not in_question and title.lower() in answer.lower() else []), *new]
     sexes: list[tuple[str, str]] = []
     if asked.kind is QuestionWord.PERSON and new:
-        name = next(
-            (thing for thing in new if thing.is_person), next((thing for thing in new if thing.is_name), new[0])
-        )
+        name = min(new, key=lambda thing: (not thing.is_person, not thing.is_name))
         new = [replace(thing, label="PERSON") if thing is name else thing for thing in new]
         sexes = [(name.text, sex) for sex in ("he", "she") if not words_of(sex).isdisjoint(words)]
     items = max(_lists(told.tree), key=len, default=())
@@ -142,7 +130,7 @@ def things_of(seen: Parse) -> list[Thing]:
     """Return the noun phrases of a text; *the mayor of Tarm* is also one phrase as a whole."""
     found: dict[str, Thing] = {}
     for word in seen.tree.words:
-        own = phrase_of(seen.tree, word) if _is_noun(word) else []
+        own = phrase_of(seen.tree, word) if is_noun(word) else []
         if not own or any(other.tag in WH for other in own):
             continue
         if word.dep == "attr" and any(child.low in ("a", "an") for child in seen.tree.children(word, "det")):
@@ -158,7 +146,8 @@ def things_of(seen: Parse) -> list[Thing]:
     return list(found.values())
 
 
-def _is_noun(word: Word) -> bool:
+def is_noun(word: Word) -> bool:
+    """Return whether a word is the head of a noun phrase."""
     return word.pos in ("NOUN", "PROPN", "X") and word.dep not in ("compound", "nmod", "amod")
 
 
@@ -180,7 +169,7 @@ def _lists(tree: Tree) -> Iterator[tuple[str, ...]]:
             members.append(nexts[0])
         if len(members) > 2 and tree.children(word, "nummod"):  # "two moons, Ibo and Usk"
             members = members[1:]
-        if len(members) > 1 and _is_noun(word) and word.dep != "conj":
+        if len(members) > 1 and is_noun(word) and word.dep != "conj":
             yield tuple(tree.phrase(phrase_of(tree, member)) for member in members)
 
 
@@ -244,12 +233,11 @@ def referents(pronoun: Word, thread: Sequence[Turn]) -> list[Thing]:
             if not sex or known.get(thing.text, sex) == sex:
                 found.setdefault(thing.text.lower(), thing)
     things = [thing for thing in found.values() if thing.label not in NUMBERS]
-    likely = [
-        t
-        for t in things
-        if (t.label in ("PERSON", "TITLE", "NAME") if sex else not t.is_person and (t.is_name or not there))
-    ]
-    likely.sort(key=lambda thing: bool(sex) and not thing.is_person)
+    if sex:
+        likely = [thing for thing in things if thing.label in ("PERSON", "TITLE", "NAME")]
+        likely.sort(key=lambda thing: not thing.is_person)
+    else:
+        likely = [thing for thing in things if not thing.is_person and (thing.is_name or not there)]
     if thread and thread[-1].defines:
         likely = list(dict.fromkeys((*thread[-1].asked, *likely)))
     return (likely if likely and (sex or there) else [*likely, *(t for t in things if t not in likely)])[:6]
@@ -260,7 +248,7 @@ def correction(seen: Parse) -> list[Word]:
     root = next((word for word in seen.asked if word.lemma == "mean" and word.head == word.index), None)
     if root is None or not any(word.low == "i" for word in seen.tree.children(root, "nsubj")):
         return []
-    things = [word for word in seen.tree.children(root, "dobj", "attr", "oprd") if _is_noun(word)]
+    things = [word for word in seen.tree.children(root, "dobj", "attr", "oprd") if is_noun(word)]
     return seen.tree.subtree(things[0]) if things else []
 
 
@@ -279,7 +267,7 @@ class _Follow:
         self.words, self.leads = words, len(words) < len(said)
         self.text = self.tree.phrase(words)
         self.pronouns = [word for word in words if refers(word, words)]
-        heads = [self.tree.phrase(phrase_of(self.tree, word)) for word in words if _is_noun(word)]
+        heads = [self.tree.phrase(phrase_of(self.tree, word)) for word in words if is_noun(word)]
         self.named = any(is_name(seen, word) for word in words) or any(map(titled, (self.text, *heads)))
         self.names = [thing for thing in (*self.last.asked, *self.last.told) if thing.is_name]
 
@@ -304,7 +292,8 @@ class _Follow:
                 yield from ([] if self.leads or not self.named else [self._alone(0.0)])
                 yield from self._instead(words)
                 yield from self.about()
-                yield from ([] if self.leads and not self._has_of() else [self._alone(-1.0)])
+                of = self.named and any(word.low == "of" for word in words[1:])
+                yield from ([] if self.leads and not of else [self._alone(-1.0)])
         elif self.pronouns:
             yield from self._resolved()
             if sum(word.pos in ("NOUN", "PROPN", "VERB") for word in words) > 1:
@@ -312,9 +301,6 @@ class _Follow:
         elif words:
             yield from ([] if self.named else self.about())
             yield self._alone(0.0 if self.named or self.leads else -1.0)
-
-    def _has_of(self) -> bool:
-        return self.named and any(word.low == "of" for word in self.words[1:])
 
     def _alone(self, prior: float) -> Reading:
         return Reading(f"{self.text}?" if self.seen.kind is not None else self.text, prior)
@@ -378,10 +364,9 @@ class _Follow:
             asks = next((place for place, word in enumerate(words) if word.tag in WH), None)
             if any(word.tag in WH for word in new):
                 if asks is not None:
-                    verb = next(
-                        (p for p, word in enumerate(words) if p > asks and word.pos in ("AUX", "VERB")), asks + 1
-                    )
-                    yield Reading(_question([text, *(word.text for word in words[verb:])]), LESS * back)
+                    verbs = (p for p, word in enumerate(words) if p > asks and word.pos in ("AUX", "VERB"))
+                    rest = [word.text for word in words[next(verbs, asks + 1) :]]
+                    yield Reading(_question([text, *rest]), LESS * back)
                     return
                 continue
             ranks = [p for p, word in enumerate(words) if word.tag in ("JJS", "RBS") or word.low in words_of("ranks")]
@@ -389,9 +374,8 @@ class _Follow:
                 if ranks:
                     left = [word.text for word in words[: ranks[0]]]
                     left = left[:-1] if left[-1:] == ["the"] and first.low == "the" else left
-                    yield Reading(
-                        _question([*left, text, *(word.text for word in words[ranks[-1] + 1 :])]), LESS * back
-                    )
+                    rest = [word.text for word in words[ranks[-1] + 1 :]]
+                    yield Reading(_question([*left, text, *rest]), LESS * back)
                 continue
             leading = first.pos in ("ADP", "SCONJ")
             fresh = self.tree.phrase(new[1:]) if leading and not text.startswith("the ") else text

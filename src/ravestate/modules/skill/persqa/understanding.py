@@ -300,6 +300,8 @@ class _Hearing:
 
     def inquiry(self) -> Meaning | None:
         """Return the meaning of a question about the user, or about something that they told."""
+        if self.seen.closing is not None and self.seen.closing.returned:  # "I love jazz, do you?" asks about the agent
+            return None
         named = any(phrase.names for said in self.seen.statements for phrase in (said.object, *said.phrases))
         if "ask_everything" in self.acts and not named and self.of_speakers():
             return Meaning("asked", (Fact(EVERYTHING),))

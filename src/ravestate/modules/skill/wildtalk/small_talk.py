@@ -115,6 +115,11 @@ async def listen(ctx: rs.RuleContext, heard: Heard) -> str:
 def _answer(heard: Heard, state: State, chance: random.Random) -> Answer:
     """Return the listener's answer. If the user says their name beside something else, the answer is to both."""
     told = None if heard.seen is None else heard.seen.introduction
+    closing = None if heard.seen is None else heard.seen.closing
+    if told is None and closing is not None and (closing.remarks or closing.returned):
+        asked = Heard(closing.text, analyse(closing.text, pipeline("")), heard.user)
+        answer = listener().answer(asked, state, chance)
+        return replace(answer, state=replace(answer.state, before=heard.text))
     if told is None or any(told.name in said for said in state.said):
         return listener().answer(heard, state, chance)
     rest = Heard(told.rest, analyse(told.rest, pipeline(""), (), (told.name,)), told.name)

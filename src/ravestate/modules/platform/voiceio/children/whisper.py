@@ -24,7 +24,7 @@ PLAUSIBLE = 0.02
 POOR = -1.0
 """If the mean log probability of the tokens is below this, the backend tries again with windows of 30 seconds."""
 REPEATED = 2.4
-"""A text with a greater compression ratio is repetitive, which shows that the model is confused."""
+"""A text with a greater compression ratio than this is repetitive, which shows that the model is confused."""
 
 
 def load(config: dict[str, Any]) -> Any:

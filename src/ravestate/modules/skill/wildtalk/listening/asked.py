@@ -31,8 +31,6 @@ ALIKE: Mapping[str, tuple[str, ...]] = {
     "choose": ("recommend",),
     "you_think": ("you_think", "should", "worth"),
     "would_you": ("would_you", "favourite"),
-    "risk": ("risk",),
-    "say_what": ("say_what",),
 }
 """The classes whose answers in an area serve a kind, the best first. By default, only its own."""
 WORDING = word_set("repeat shorter say_word")
@@ -136,10 +134,7 @@ def asked_in(
     if options and (not kind or kind in OPEN):
         kind = "choose" if asking or kind == "choose" or len(words) <= BRIEF else ""
     if asking and not options and state.options and (kind == "choose" or _WHICH.search(asking)):
-        kind, options = (
-            "choose",
-            (*state.options, False),
-        )  # "I can't choose between tea and milk. Which would you take?"
+        kind, options = "choose", (*state.options, False)  # "... tea and milk. Which would you take?"
     compared = any(word.tag in ("JJR", "RBR") and word.low not in _LIKED for word in words)
     if kind == "choose" and not options and [word.low for word in words if word.pos != "PUNCT"][-2:] == ["or", "not"]:
         kind = "should"  # "can I do that or not?"
@@ -179,11 +174,8 @@ def asked_in(
     able = any(word.low in ("can", "could") for word in words[:1])
     groups = (["act"] if verbal else ["two"]) if options else []
     groups += ["picked"] * (kind in ("pick", "recommend", "favourite") and "picked" in values)
-    groups += (
-        ["can"] * able
-        + ["polar"] * (seen.question is QuestionWord.YES_NO)
-        + ["question", "about", "last", "short", "word"]
-    )
+    groups += ["can"] * able + ["polar"] * (seen.question is QuestionWord.YES_NO)
+    groups += ["question", "about", "last", "short", "word"]
     return Asked(kind, area, values, tuple(groups))
 
 
@@ -249,9 +241,8 @@ def options_between(tree: Tree) -> tuple[str, str] | None:
         for one in tree.children(word, "pobj") if word.low == "between" else ():
             for other in tree.children(one, "conj"):
                 inside = {part.index for part in tree.subtree(other)}
-                first = [
-                    part for part in tree.subtree(one) if part.index not in inside and part.dep not in ("cc", "punct")
-                ]
+                own = [part for part in tree.subtree(one) if part.index not in inside]
+                first = [part for part in own if part.dep not in ("cc", "punct")]
                 return turned(tree, first), turned(tree, tree.subtree(other))
     found = options_in(tree, tree.words)
     return found[:2] if found else None

@@ -73,9 +73,8 @@ class Turn:
         if kind == "holder":
             return self._say(kind, "start", Game(kind, self._chance.choice(list(self._shows["animal"]["known"]))))
         if wish.thing:
-            return self._say(
-                kind, "without", Game(kind), thing=wish.thing, Thing=wish.thing[:1].upper() + wish.thing[1:]
-            )
+            thing = wish.thing[:1].upper() + wish.thing[1:]
+            return self._say(kind, "without", Game(kind), thing=wish.thing, Thing=thing)
         return self._say(kind, "start", Game(kind))
 
     def stop(self) -> Played:
@@ -114,18 +113,10 @@ class Turn:
         kind, shows = game.kind, self._shows[game.kind]
         if "rules" in shows and RULES.search(self._text):
             return self._say(kind, "rules", game, word=game.word, letter=game.word[-1:].upper())
-        if kind == "riddle" and game.word and not self.solves():
-            hint = next(one["hint"] for one in self._shows["riddles"] if one["ask"] == game.word)
-            if HINT.search(self._text):
-                return self._say(kind, "hint", replace(game, turn=1), hint=hint)
-        if (
-            kind in ("riddle", "chain", "animal", "holder")
-            and game.word
-            and THINKING.search(self._text)
-            and not self.solves()
-        ):
-            return self._say("play", "wait", game)
-        return None
+        if kind == "riddle" and game.word and HINT.search(self._text) and not self.solves():
+            return self._say(kind, "hint", replace(game, turn=1), hint=self._riddle_of(game)["hint"])
+        thinks = kind in ("riddle", "chain", "animal", "holder") and game.word and THINKING.search(self._text)
+        return self._say("play", "wait", game) if thinks and not self.solves() else None
 
     def _learnt(self, game: Game) -> Played | None:
         return self._say("animal", "learnt", None) if game.kind == "animal" else None
@@ -143,10 +134,12 @@ class Turn:
     def solves(self) -> bool:
         """Return whether the utterance, however long, contains the solution of the riddle."""
         game = self._state.game
-        if game is None or game.kind != "riddle":
+        if game is None or game.kind != "riddle" or not game.word:
             return False
-        answers = [one["answers"] for one in self._shows["riddles"] if one["ask"] == game.word]
-        return bool(answers and self._lemmas().intersection(answers[0]))
+        return not self._lemmas().isdisjoint(self._riddle_of(game)["answers"])
+
+    def _riddle_of(self, game: Game) -> Mapping[str, Any]:
+        return next(one for one in self._shows["riddles"] if one["ask"] == game.word)
 
     def _holder(self, game: Game) -> Played | None:
         """Answer a question about the animal that the agent thinks of."""
@@ -162,7 +155,7 @@ class Turn:
         return self._say("holder", "unsure", game) if self._seen is not None and self._seen.question else None
 
     def _riddle(self, game: Game) -> Played | None:
-        riddle = next(one for one in self._shows["riddles"] if one["ask"] == game.word)
+        riddle = self._riddle_of(game)
         answer, over, seen, lemmas = riddle["answers"][0], Game("riddle"), self._seen, self._lemmas()
         if lemmas.intersection(riddle["answers"]):
             return self._say("riddle", "right", over, answer=answer)
@@ -176,9 +169,8 @@ class Turn:
 
     def _chain(self, game: Game) -> Played | None:
         word, letter = self._words[-1], game.word[-1]
-        verbs = {
-            one.lemma.lower() for one in (self._seen.tree.words if self._seen else ()) if one.pos in ("VERB", "AUX")
-        }
+        words = self._seen.tree.words if self._seen else ()
+        verbs = {one.lemma.lower() for one in words if one.pos in ("VERB", "AUX")}
         brief = len(self._words) <= CHAINED or (len(self._words) <= CHAINING and verbs - {word} <= _MOVING)
         brief = brief or (":" in self._text and len(self._text.rpartition(":")[2].split()) <= CHAINED)
         if not brief or word[0] != letter:
@@ -227,9 +219,8 @@ class Turn:
     def _say(self, kind: str, group: str, game: Game | None, **roles: str) -> Played:
         """Return a phrase of the performance `kind`, and the state with the game after it."""
         show = self._state.show if kind in ("play", "knock") else kind
-        return self._chance.choice(self._shows[kind][group]).format(**roles), replace(
-            self._state, game=game and replace(game, asides=0), show=show
-        )
+        state = replace(self._state, game=game and replace(game, asides=0), show=show)
+        return self._chance.choice(self._shows[kind][group]).format(**roles), state
 
     def _tell(self, wish: Wish, listed: Sequence[str]) -> Played:
         """Tell a joke or story about the subject that the user wants. If there is none, say so, and tell another."""

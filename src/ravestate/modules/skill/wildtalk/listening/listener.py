@@ -168,7 +168,9 @@ class Listener:
         """Return the performance that the user asks for; None if they ask for none."""
         if heard.seen is None:
             return None
+        closing = heard.seen.closing
         acts = [act for act in heard.seen.acts.values() if act.name in SHOWS and act.score >= ASKED]
+        acts = [act for act in acts if closing is None or not closing.outweighs(act.text)]
         names = [act.name for act in sorted(acts, key=lambda act: -act.score)]
         return wish_in(self._phrases.shows, heard.seen, state, names)
 

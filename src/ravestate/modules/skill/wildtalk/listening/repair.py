@@ -12,6 +12,7 @@ from dataclasses import dataclass
 from ravestate.language.normal import plain
 from ravestate.modules.meta.nlp.analysis import Analysis
 
+from .roles import TURNED
 from .state import State
 
 LONGEST = 9
@@ -46,7 +47,6 @@ _REPEATED = re.compile(
 )
 _CLAUSES = re.compile(r"[,;] (?=(?:i|that|what) )", re.IGNORECASE)
 _ALARMS = ("what", "huh", "no", "wait", "sorry", "um")
-_TURNED = {"my": "your", "our": "your", "your": "my", "me": "you", "us": "you", "you": "me", "i": "you", "am": "are"}
 _WHY = re.compile(r"^(?:but )?(?:why|how come|what for|why so)$")
 _CLAUSE = re.compile(
     r"^(?:what|who|where|when|why|how|which|can|should|do|does|is|are|will|would)\b|^(?:i|we|he|she|they|you|it) \w+ \w+"
@@ -114,7 +114,7 @@ def _meant(what: str, rest: Sequence[str], own: str, state: State) -> Repair:
     return Repair(
         "meant",
         " ".join((again, *others)) if parts or _asks(before) else " ".join(others),
-        " ".join(_TURNED.get(word, word) for word in what.split()),
+        " ".join(TURNED.get(word, word) for word in what.split()),
     )
 
 

@@ -27,16 +27,14 @@ _ASIDES = frozenset(("think", "guess", "suppose", "believe"))
 _BESIDE = frozenset(("relcl", "prep", "pobj", "cc", "conj", "appos", "punct", "advcl", "acl"))
 _VAGUE = frozenset(("any", "some", "no", "what", "which", "its", "such", "every", "each", "all"))
 _NOMINAL = frozenset(("NOUN", "PROPN", "ADJ", "NUM", "DET", "PRON", "PART"))
-_TURNED = {
-    "my": "your",
-    "our": "your",
-    "mine": "yours",
-    "ours": "yours",
-    "me": "you",
-    "us": "you",
-    "your": "my",
-    "you": "me",
-}
+TURNED = dict(
+    zip(
+        ["my", "our", "mine", "ours", "me", "us", "i", "am", "your", "you"],
+        ["your", "your", "yours", "yours", "you", "you", "you", "are", "my", "me"],
+        strict=True,
+    )
+)
+"""Words → the words that the agent says for them."""
 _REPEATABLE = re.compile(r"[\w' ,.’-]+")
 
 
@@ -106,7 +104,7 @@ def turned(tree: Tree, words: Sequence[Word]) -> str:
     """Return a noun phrase from the agent's view: *my brother's dog* becomes *your brother's dog*; empty if odd."""
     found = ""
     for word in words:
-        text = _TURNED.get(word.low, word.text)
+        text = TURNED.get(word.low, word.text)
         found += text if not found or text.startswith(("'", "’")) or text == "," else f" {text}"
     return found if len(found) <= LONGEST and _REPEATABLE.fullmatch(found) else ""
 
@@ -132,16 +130,15 @@ def _is_aside(tree: Tree, verb: Word) -> bool:
 
 def _statement(seen: Analysis, sentence: str) -> Statement | None:
     """Return the statement of the sentence that matters most, by default the last sentence."""
-    told = [
-        one for one in seen.statements if isinstance(one.triple.subject, str) and isinstance(one.triple.object, str)
-    ]
+    told = [one for one in seen.statements if all(isinstance(part, str) for part in (one.triple[0], one.triple[2]))]
     low = (sentence or (seen.sentences[-1] if seen.sentences else "")).lower()
-    inside = [
-        one for one in told if one.verb and one.subject.text.lower() in low and one.object.text.lower() in low
-    ] or told
-    first = [one for one in inside if not one.hearsay and not one.conditional] or inside
-    telling = [one for one in first if one.subject.head or one.subject.text.lower() not in _POINTING] or first
-    return telling[0] if telling else None
+
+    def worth(one: Statement) -> tuple[bool, bool, bool]:
+        inside = bool(one.verb) and one.subject.text.lower() in low and one.object.text.lower() in low
+        pointing = not one.subject.head and one.subject.text.lower() in _POINTING
+        return inside, not (one.hearsay or one.conditional), not pointing
+
+    return max(told, key=worth, default=None)
 
 
 def _thing(tree: Tree, statement: Statement) -> str:
@@ -165,9 +162,8 @@ def _being(seen: Analysis, material: Material) -> Being | None:
                     mine = statement.subject_person == "I" and part is not statement.subject
                     return _as_being(seen.tree, part, *material.beings[part.head], mine=mine)
     for word in seen.tree.words:  # also outside of statements: "my mother she is ill"
-        if word.lemma.lower() in material.beings and any(
-            part.low in ("my", "our") for part in seen.tree.children(word, "poss")
-        ):
+        mine = any(part.low in ("my", "our") for part in seen.tree.children(word, "poss"))
+        if mine and word.lemma.lower() in material.beings:
             kind, gender = material.beings[word.lemma.lower()]
             return Being(f"your {word.low}", kind, gender, word.tag == "NNS")
     people = [entity.text for entity in seen.entities if entity.label == "PERSON" and entity.text[:1].isupper()]
@@ -185,14 +181,8 @@ def _as_being(tree: Tree, phrase: Phrase, kind: str, gender: str, *, mine: bool)
     plural = any(word.tag in ("NNS", "NNPS") and word.lemma.lower() == phrase.head for word in tree.words)
     if phrase.names and (kind == "pet" or phrase.owner is None):
         return Being(phrase.name, kind, gender)
-    words = [_TURNED.get(word.lower(), word) for word in phrase.text.removesuffix("'s").split()]
+    words = [TURNED.get(word.lower(), word) for word in phrase.text.removesuffix("'s").split()]
     noun = next((word.low for word in tree.words if word.lemma.lower() == phrase.head), phrase.head)
-    owned = phrase.owner is not None and len(words) <= 3
-    text = (
-        " ".join(words)
-        if owned
-        else f"your {noun}"
-        if phrase.owner is not None or (mine and kind == "pet")
-        else f"the {noun}"
-    )
+    text = f"your {noun}" if phrase.owner is not None or (mine and kind == "pet") else f"the {noun}"
+    text = " ".join(words) if phrase.owner is not None and len(words) <= 3 else text
     return Being(text, kind, gender, plural or (phrase.amount or 1) > 1)

@@ -7,6 +7,7 @@ from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass
 from typing import Any
 
+from ravestate.language.contractions import word_set
 from ravestate.modules.meta.nlp.analysis import Analysis
 from ravestate.modules.meta.nlp.tree import Tree, Word
 
@@ -46,7 +47,7 @@ _MORE = re.compile(
     r"^(?:\W*\w+\W+){0,2}(?:1|one|another|next|some) ?(?:more|one)?\W*(?:please|pls)?\W*$", re.IGNORECASE
 )
 """A whole utterance that asks for another performance, even later: *meh, one more*."""
-_SUBJECT = frozenset(("about", "with", "on", "of", "involving", "featuring"))
+_SUBJECT = word_set("about with on of involving featuring")
 _CORRECTS = re.compile(r"\bi (?:said|meant|mean|wanted|asked for|want)\b", re.IGNORECASE)
 _OFFERED = re.compile(
     r"\b(?:shall|may|can|could) i\b[^.!]*\?$|\b(?:would|do) you (?:like|want)\b[^.!]*\?$|, then\?$|\bask me for\b|\bi have\b",
@@ -55,37 +56,14 @@ _OFFERED = re.compile(
 """The agent offers a performance: *Shall I tell a story?*"""
 _NOUNS = ("NOUN", "PROPN", "X")
 _IN_IT = re.compile(r" (?:in|on) (?:it|them)$| please$")
-_VAGUE = frozenset(
-    ("it", "one", "me", "that", "this", "them", "those", "us", "you", "something", "anything", "time", "please")
-)
+_VAGUE = word_set("it one me that this them those us you something anything time please")
 _PLAYED = re.compile(
     r"\bplay (?:an? )?(?:(?:game|round|match) of )?(?:some )?([a-z][a-z -]*?)(?: (?:with|against|together|now|please|then|instead|maybe|perhaps|too"
     r"|today|tonight)\b.*)?[?.! ]*$",
     re.IGNORECASE,
 )
 """The game that the user wants to play: *can we play draughts together?*"""
-_ANY = frozenset(
-    [
-        "game",
-        "games",
-        "something",
-        "anything",
-        "it",
-        "again",
-        "that",
-        "a",
-        "the",
-        "one",
-        "with",
-        "you",
-        "me",
-        "riddle",
-        "riddles",
-        "animal",
-        "animals",
-        "on",
-    ]
-)
+_ANY = word_set("game games something anything it again that a the one with you me riddle riddles animal animals on")
 
 
 @dataclass(frozen=True, slots=True)
@@ -112,7 +90,8 @@ def wish_in(shows: Mapping[str, Any], seen: Analysis, state: State, acts: Sequen
     low = seen.text.lower()
     if _GUESSER.search(low) or _HOLDER.search(low):
         return Wish("animal" if _GUESSER.search(low) else "holder")
-    kind = next(filter(None, (_named(shows, sentence) for sentence in reversed(seen.sentences))), "")
+    asked = seen.sentences if seen.closing is None or not seen.closing.remarks else (seen.closing.text,)
+    kind = next(filter(None, (_named(shows, sentence) for sentence in reversed(asked))), "")
     offered = state.said[-1] if state.said and _OFFERED.search(state.said[-1]) else ""
     accepted = offered and kinds_in(shows, offered) and not seen.yesno.no
     if accepted and not kind and len(low.split()) <= LONGEST:
@@ -121,13 +100,9 @@ def wish_in(shows: Mapping[str, Any], seen: Analysis, state: State, acts: Sequen
     short = len(low.split()) <= LONGEST // 2
     if not kind and state.show and _MORE.search(low):
         kind = state.show
-    if (
-        not kind
-        and lately
-        and short
-        and (_ANOTHER.search(low) or (_CORRECTS.search(low) and state.said[-1].endswith(state.shown[-1])))
-    ):
-        kind = state.show
+    if not kind and lately and short:
+        corrected = _CORRECTS.search(low) and state.said[-1].endswith(state.shown[-1])
+        kind = state.show if _ANOTHER.search(low) or corrected else ""
     if not kind and acts and not _OFFERS.search(low):
         kind = acts[0]
     if not kind:
@@ -140,10 +115,9 @@ def wish_in(shows: Mapping[str, Any], seen: Analysis, state: State, acts: Sequen
     if noun is None:
         return Wish(kind)
     parts = [word for word in seen.tree.subtree(noun) if not (word.dep in ("punct", "relcl") or word.low in _SUBJECT)]
-    words = [word for word in parts if word.pos in ("NOUN", "PROPN", "X") or word is noun]
-    return Wish(
-        kind, _IN_IT.sub("", seen.tree.phrase(parts)), tuple(dict.fromkeys(word.lemma.lower() for word in words))
-    )
+    words = [word for word in parts if word.pos in _NOUNS or word is noun]
+    lemmas = tuple(dict.fromkeys(word.lemma.lower() for word in words))
+    return Wish(kind, _IN_IT.sub("", seen.tree.phrase(parts)), lemmas)
 
 
 def kinds_in(shows: Mapping[str, Any], text: str) -> list[str]:
@@ -183,15 +157,8 @@ def _subject(shows: Mapping[str, Any], tree: Tree, low: str) -> Word | None:
     own = {name for names in shows["names"].values() for name in names}
     found = [word for word in tree.children_of(about, "pobj", "pcomp") if word.low not in own]
     found = [word for word in found if word.low not in _VAGUE and word.pos in _NOUNS]
-    found = (
-        found
-        or [
-            one
-            for word in about
-            for one in tree.words[word.index + 1 : word.index + 4]
-            if one.pos in _NOUNS and one.low not in _VAGUE
-        ][:1]
-    )
+    after = [one for word in about for one in tree.words[word.index + 1 : word.index + 4]]
+    found = found or [one for one in after if one.pos in _NOUNS and one.low not in _VAGUE][:1]
     nouns = [word for word in tree.words if word.low in own]
     found = found or [word for word in tree.children_of(nouns, "compound", "nmod") if word.low not in shows["plain"]]
     if not found and not nouns and _CORRECTS.search(low):
