@@ -328,6 +328,13 @@ def test_errors_do_not_show_secrets(converse: Conversation) -> None:
         converse(refusal, base_url="http://me:s3cret@127.0.0.1:1/v1")
 
 
+def test_a_long_error_message_shows_no_part_of_the_key(converse: Conversation) -> None:
+    for before in range(280, 300):
+        with pytest.raises(PlatformError) as failure:
+            converse(refusing("401 Unauthorized", "-" * before + "s3cret"), api_key=SecretStr("s3cret"))
+        assert "s3" not in str(failure.value)
+
+
 def test_a_key_with_impossible_characters_is_refused(converse: Conversation) -> None:
     with pytest.raises(PlatformError, match="api_key has characters that no key has"):
         converse(hello, api_key=SecretStr("a\nb"))
