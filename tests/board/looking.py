@@ -1,4 +1,4 @@
-"""Clients that speak the board's protocol with an application in memory and in virtual time."""
+"""Clients of the board for tests. They speak its protocol with an application in memory, in virtual time."""
 
 import asyncio
 import contextlib
@@ -46,7 +46,7 @@ async def talk(ctx: rs.RuleContext) -> None:
 
 @gossip.rule(when=cheered)
 async def bow(ctx: rs.RuleContext) -> None:
-    """A rule that does nothing. Its signal carries a payload."""
+    """A rule that does nothing. It waits for a signal with a payload."""
 
 
 async def passing(seconds: float) -> None:

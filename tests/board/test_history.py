@@ -11,7 +11,7 @@ def born(spike: int, signal: str, group: int = 1, source: int = 0, time: float =
 
 
 def run(number: int, rule: str, spikes: tuple[int, ...], begin: float, end: float | None) -> list[Record]:
-    """Return the records of a run from `begin` to `end` (seconds); without an end, it is still running."""
+    """Return the records of a run from `begin` to `end` (seconds); without `end`, the run is not over yet."""
     ended = [] if end is None else [Settled(end, number, rule, "done", "", True)]
     return [Started(begin, number, rule, 0, spikes), *ended]
 
@@ -38,7 +38,7 @@ def test_ran_is_true_between_the_start_and_the_end_of_a_run(time: float, runs: b
         born(2, "m:s", group=2),
         *run(1, "m:r", (1,), 1.0, 5.0),
         *run(2, "m:r", (1,), 2.0, 2.2),  # it runs in parallel
-        *run(3, "m:r", (2,), 5.2, 6.0),  # it runs for another cause
+        *run(3, "m:r", (2,), 5.2, 6.0),  # the rule runs for another cause
         *run(4, "m:r", (1,), 7.0, None),
     ]
     assert History(records, 1).ran("m:r", time) is runs

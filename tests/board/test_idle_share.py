@@ -1,4 +1,4 @@
-"""The idle share of a process. Time in which it waits for a processor that others use does not count as idle."""
+"""The idle share of a process. Time spent waiting for a processor that other programs use is not idle."""
 
 from pathlib import Path
 

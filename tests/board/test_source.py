@@ -1,4 +1,4 @@
-"""The board makes calls outside of any task. Their callers can be cancelled meanwhile."""
+"""The board makes calls outside of any task. The task that requested a call can be cancelled meanwhile."""
 
 import asyncio
 import contextlib

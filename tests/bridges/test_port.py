@@ -50,7 +50,7 @@ Talk = Callable[[Conversation, list[Utterance]], Awaitable[None]]
 
 
 def converse(talk: Talk, *modules: rs.Module) -> None:
-    """Run a test in virtual time. It gets a conversation, and a list of the utterances outside of `answer`."""
+    """Run a test in virtual time. The test gets a conversation, and a list of the utterances outside of `answer`."""
 
     async def main() -> None:
         spoken: list[Utterance] = []

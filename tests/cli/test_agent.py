@@ -378,7 +378,7 @@ def test_the_last_of_two_values_for_a_setting_wins(folder: Path, capsys: Capture
     assert run(capsys, "./hello.py", "--set", "hello.pause=2", "--set", "hello.pause=3").startswith("Hello 3.0")
 
 
-def test_with_required_adds_the_required_modules_even_in_a_cycle(folder: Path) -> None:
+def test_the_function_with_required_adds_the_required_modules_even_in_a_cycle(folder: Path) -> None:
     write(folder / "user.py", HELLO.replace("    hello = ", "    base = ").replace("@hello", "@base"))
     base = rs.Module("base")
     top = rs.Module("top", requires=[base])

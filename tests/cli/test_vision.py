@@ -28,7 +28,7 @@ def rows(text: str) -> list[tuple[str, str, str]]:
     return [(hit[1], hit[2], Path(hit[3]).stem) for hit in found if hit is not None]
 
 
-def test_who_names_a_face_after_learn_and_no_longer_after_forget(
+def test_the_action_who_names_a_face_after_learn_and_no_longer_after_forget(
     tmp_path: Path, capsys: pytest.CaptureFixture[str]
 ) -> None:
     memory = ("--path", str(tmp_path / "memory.lbug"))

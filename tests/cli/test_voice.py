@@ -112,7 +112,9 @@ def test_a_recording_is_never_overwritten(folder: Path, capsys: pytest.CaptureFi
     assert code == 2 and "would be overwritten" in errors and file.read_bytes() == before
 
 
-def test_files_that_are_not_wav_files_are_refused_with_advice(folder: Path, capsys: pytest.CaptureFixture[str]) -> None:
+def test_a_name_that_does_not_end_in_wav_is_refused_with_advice(
+    folder: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
     wav(folder / "rec.sound", noise(0.1, 500))
     code, _, errors = call(capsys, "voice", "talk", "rec.sound", "-o", "out.wav", "rawio")
     assert code == 2 and "rec.sound: name a recording that ends in .wav" in errors

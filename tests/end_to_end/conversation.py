@@ -63,7 +63,7 @@ class Conversation:
             "idle": {"bored_after": 5.0},
             "ontology": {"path": folder / "memory.lbug"},
             "genqa": {"index": folder / "documents.sqlite"},
-            "wildtalk": {"gate": False},  # the gate could refuse the only answer of `Model`
+            "wildtalk": {"gate": False},  # the gate for generated replies could refuse the only answer of `Model`
         }
         for name, values in (settings or {}).items():
             chosen[name] = {**chosen.get(name, {}), **values}

@@ -59,7 +59,7 @@ async def test_the_agent_learns_that_the_visitor_is_writing_but_not_at_each_key(
         await page.keyboard.press("Enter")
         await expect(log(page)).to_contain_text(f"You said: {text}")
         told = await log(page).get_by_text("You are writing.").count()
-        assert 1 <= told < len(text) / 4  # the page tells this at most once every two seconds
+        assert 1 <= told < len(text) / 4  # the page reports the writing at most once every two seconds
 
 
 @on_stage
@@ -84,7 +84,7 @@ async def test_the_page_shows_that_the_agent_thinks_and_then_speaks(stage: Stage
         Cue.thought.set()
         growing = page.locator(".partial")
         await expect(growing).to_have_text("Once upon a time")
-        # A screen reader reads it only when it is complete.
+        # A screen reader reads the utterance only when it is complete.
         await expect(growing).to_have_attribute("aria-hidden", "true")
         await expect(log(page)).not_to_contain_text("is thinking")
         Cue.told.set()

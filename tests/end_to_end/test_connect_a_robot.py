@@ -113,7 +113,7 @@ def reader(tmp_path: Path, capsys: pytest.CaptureFixture[str], monkeypatch: pyte
 
 @contextlib.contextmanager
 def speaking(address: str) -> Iterator[threading.Event]:
-    """Repeat a question from the left of the robot. The event is set when the robot has turned and answered."""
+    """Repeat a question from the left of the robot. The event that it yields is set when the robot has turned and answered."""
     answered, enough = threading.Event(), threading.Event()
 
     def speak() -> None:

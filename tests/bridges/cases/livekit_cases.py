@@ -136,7 +136,7 @@ async def test_the_agent_knows_which_of_its_words_the_user_heard() -> None:
         loudspeaker.most = len("One, two,")
         handle = session.generate_reply(
             user_input="count again"
-        )  # the rule ends immediately, and speaking takes longer
+        )  # the rule ends immediately, but speaking its words takes longer
         await loudspeaker.stopped.wait()
         await session.interrupt()
         await handle

@@ -93,7 +93,7 @@ async def run(
 ) -> tuple[list[Frame], list[Frame]]:
     """Send frames through a processor; return the frames that went downstream and upstream.
 
-    `after` maps a text to further frames. Send these when the processor has pushed the text; then end the pipeline.
+    `after` maps a text to more frames. When the processor has pushed the text, send these frames and end the pipeline.
     """
     processor = RavestateProcessor(agent)
     if after:

@@ -48,5 +48,7 @@ def test_another_thread_can_write_the_input() -> None:
         ("Hello", "uh", None),
     ],
 )
-def test_rest_returns_the_part_of_an_utterance_after_its_pieces(text: str, pieces: str, rest: str | None) -> None:
+def test_rest_returns_the_part_of_an_utterance_that_the_pieces_so_far_lack(
+    text: str, pieces: str, rest: str | None
+) -> None:
     assert rawio.rest(text, pieces) == rest

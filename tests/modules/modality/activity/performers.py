@@ -1,4 +1,4 @@
-"""Simulated people for the tests: a skeleton from ``tools/activities`` performs an activity before a camera."""
+"""Simulated people for the tests: a skeleton from ``tools/activities`` performs an activity in front of a camera."""
 
 from __future__ import annotations
 

@@ -75,7 +75,7 @@ def test_a_film_keeps_the_last_thirty_seconds() -> None:
     assert (film.poses[0].at, film.poses[-1].at) == (29.5, 59.5)
     assert [pose.at for pose in film.part(58.9, 100.0)] == [59.0, 59.5]
     assert film.with_pose(Pose(59.5, points)) is film
-    # Time goes back when another clock takes over or a video begins again. The film then drops the older poses.
+    # Time goes back if the clock changes or a video begins again. The film then drops the poses before this moment.
     assert len(film.with_pose(Pose(1.0, points)).poses) == 1
     assert repr(film) == "Film(61 poses, 30.0 s)"
     assert repr(Film()) == "Film()"

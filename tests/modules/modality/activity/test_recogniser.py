@@ -33,7 +33,7 @@ def test_the_starter_set_has_the_activities_that_people_act_out(recogniser: Reco
 
 @pytest.mark.parametrize("demonstrations", [1, 3])
 def test_a_movement_is_learnt_from_a_few_demonstrations(demonstrations: int) -> None:
-    """Later, the recogniser finds this movement in other performers too, and still finds the activities of before."""
+    """The recogniser then finds this movement in other performers too, and still finds the activities it knew."""
     taught = ("archery", "skiing", "stretching", "golf", "sawing", "juggling")
     hits = 0
     for name in taught:

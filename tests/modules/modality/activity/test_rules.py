@@ -71,7 +71,7 @@ def test_an_unknown_movement_raises_no_signal_until_it_is_taught(tmp_path: Path)
         assert again.names == {"nordic skiing"}
 
 
-def test_a_lesson_without_poses_or_without_a_name_teaches_nothing(tmp_path: Path) -> None:
+def test_a_lesson_without_poses_or_without_a_name_has_no_effect(tmp_path: Path) -> None:
     with simulate(activity, settings={"activity": {"folder": tmp_path}}) as sim:
         sim.advance(1.0)
         sim.emit(activity.taught, activity.Lesson("nothing", 0.0, 1.0))

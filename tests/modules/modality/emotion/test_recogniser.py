@@ -68,7 +68,7 @@ def test_recognise_gives_the_results_that_the_readme_shows(text: str, feeling: s
     assert recognise(text) == feeling
 
 
-def test_without_the_model_recognise_knows_only_its_examples_and_otherwise_raises_an_error(
+def test_without_the_encoder_recognise_accepts_only_its_examples_and_raises_an_error_for_other_texts(
     monkeypatch: pytest.MonkeyPatch,
 ) -> None:
     class Missing(Matcher):

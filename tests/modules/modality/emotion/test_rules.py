@@ -33,7 +33,7 @@ def module(name: str = "skill", seconds: float = 0.0, **declared: Any) -> rs.Mod
 
 
 def calm(*modules: Any, **settings: Any) -> Simulation:
-    # The pieces of `Model` are not sentences, so the gate would refuse them.
+    # The gate for generated replies would refuse the pieces of `Model`, because they are no sentences.
     more = {"wildtalk": {"gate": False}} if wildtalk in modules else {}
     return simulate(emotion, *modules, settings={"emotion": {**CALM, **settings}, **more})
 
@@ -83,7 +83,7 @@ def test_some_inputs_raise_a_feeling_with_the_probability_in_the_settings(text: 
         assert felt(sim) == []
 
 
-def test_the_frequency_fits_the_setting_and_equal_seeds_give_equal_results() -> None:
+def test_feelings_are_as_frequent_as_the_setting_says_and_equal_seeds_give_equal_results() -> None:
     def showed_feeling(seed: int) -> list[bool]:
         with simulate(emotion, settings={"emotion": {**CALM, "shy": 0.3}}, seed=seed) as sim:
             found: list[bool] = []

@@ -3,7 +3,7 @@
     PYTHONPATH=tests python -m modules.modality.visionio.error_curve
 
 The photos in `photographs` show 14 faces of nine people. From each photo, the tool also makes worse pictures: dark,
-blurred, and so on. The agent wrongly refuses two pictures of one person if their distance is above the threshold. It
+blurred, and so on. The agent wrongly refuses a pair of pictures of one person if their distance is above the threshold. It
 wrongly accepts pictures of two people if their distance is at most the threshold.
 """
 

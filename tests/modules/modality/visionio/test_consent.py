@@ -42,7 +42,7 @@ def test_a_yes_to_another_question_does_not_permit_the_agent_to_keep_a_face(memo
     assert remembered(memory) == {"Joe": 0}
 
 
-def test_only_visionio_answers_a_users_permission_or_request_about_their_face(memory: Path) -> None:
+def test_only_visionio_answers_if_users_permit_or_request_something_about_their_face(memory: Path) -> None:
     stage = Stage()
     settings = {
         "visionio": {"source": ""},

@@ -197,7 +197,7 @@ def test_the_agent_notices_that_another_person_has_taken_someones_place(memory: 
         assert present(sim) == ["Joe"]
 
 
-def test_the_user_of_another_platform_gets_the_name_of_the_person_before_the_camera(memory: Path) -> None:
+def test_the_user_of_another_platform_gets_the_name_of_the_person_in_front_of_the_camera(memory: Path) -> None:
     stage = Stage()
     with agent(memory) as sim:
         meet(sim, stage, "obama", "Barack")
@@ -333,7 +333,7 @@ def test_a_user_can_correct_an_agent_that_takes_them_for_another_person(memory: 
 
 
 def test_a_user_can_correct_a_wrong_name_for_their_face_in_memory(memory: Path) -> None:
-    """The agent removes the face from the person with the wrong name, and stores it for the one with the right name."""
+    """The agent moves the face from the person with the wrong name to the person with the right name."""
     stage = Stage()
     with agent(memory) as sim:
         meet(sim, stage, "obama", "Joe")

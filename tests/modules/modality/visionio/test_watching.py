@@ -96,7 +96,7 @@ def test_black_pictures_are_reported_once(monkeypatch: pytest.MonkeyPatch, caplo
 
 
 def looks_of(*spent: float) -> list[float]:
-    """Return the start times of looks that take the given seconds, with 10 looks per second and a load of 0.5."""
+    """Return the start times of looks that take the given seconds. The settings are 10 looks/s and a load of 0.5."""
 
     async def began() -> list[float]:
         now, found = 0.0, list[float]()

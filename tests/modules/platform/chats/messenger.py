@@ -30,7 +30,7 @@ async def greet(ctx: rs.RuleContext) -> None:
 
 
 class Post:
-    """A stand-in for a messenger. Each attempt to use it raises the next of `failures`, until none is left."""
+    """A stand-in for a messenger. Each use raises the next error in `failures`, until the list is empty."""
 
     longest = 100
     rate = 1000.0

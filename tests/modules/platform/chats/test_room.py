@@ -309,7 +309,7 @@ async def who_is_it(ctx: rs.RuleContext) -> None:
 
 @knower.rule(when=interloc.users.added, writes=rawio.output, weight=9)
 async def keep_silent(ctx: rs.RuleContext) -> None:
-    """Replace the greeting of `parrot` by silence."""
+    """Make `parrot` greet nobody."""
 
 
 def test_memory_keeps_a_person_with_their_account_until_they_ask_to_be_forgotten(tmp_path: Path) -> None:

@@ -11,7 +11,7 @@ from ravestate.modules.platform.chats.store import Answer
 
 
 @in_virtual_time
-async def test_spare_is_true_only_if_a_turn_is_free_now() -> None:
+async def test_spare_returns_true_only_if_a_message_can_be_sent_now() -> None:
     pace = Pace(20.0)
     await past(10.0)
     while pace.spare():  # use up the burst
@@ -48,7 +48,7 @@ async def test_a_voice_note_that_the_messenger_refuses_is_sent_as_text(tmp_path:
 
 
 class Stubborn(Post):
-    """A messenger. During each of its first two deliveries, the file becomes unwritable for 20 s."""
+    """A messenger. During each of its first two deliveries, the store's file is unwritable for 20 s."""
 
     def __init__(self) -> None:
         super().__init__()

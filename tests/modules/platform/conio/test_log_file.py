@@ -47,7 +47,7 @@ def talk(folder: Path, *, redirected: bool) -> tuple[bytes, str]:
     seen = b""
     errors = b""
     typed = b""
-    again = 6  # how often to type the keys at most: a suspended prompt can lose them
+    again = 6  # the maximum number of attempts to type the keys, because a suspended prompt can lose them
 
     def read() -> bool:
         """Act as the terminal; return whether the program's side is still open."""

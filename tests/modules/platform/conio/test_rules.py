@@ -212,7 +212,7 @@ def test_a_user_who_presses_ctrl_c_gets_no_answer(keys: Keys) -> None:
         assert sim.said == ["Bye!"]
 
 
-def test_the_line_of_pieces_ends_even_if_no_utterance_follows(keys: Keys) -> None:
+def test_a_line_of_streamed_pieces_ends_even_if_no_utterance_follows(keys: Keys) -> None:
     with simulate(stammer, conio) as sim:
         keys.type("hello")
         sim.settle()

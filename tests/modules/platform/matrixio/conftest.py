@@ -70,7 +70,7 @@ class Homeserver:
         }
         (self._folder / "log.yaml").write_text(yaml.safe_dump(logging))
         (self._folder / "homeserver.yaml").write_text(yaml.safe_dump(config))
-        # If this file were missing, Synapse would take seconds to make it.
+        # Without this file, Synapse would spend seconds on making one.
         seed = base64.b64encode(os.urandom(32)).decode().rstrip("=")
         (self._folder / "signing.key").write_text(f"ed25519 a_test {seed}\n")
         self._command = [self._python, "-m", "synapse.app.homeserver", "-c", str(self._folder / "homeserver.yaml")]

@@ -52,7 +52,7 @@ def free_port() -> int:
 class Network(abc.ABC):
     """A network with one other node, the peer, in a separate process.
 
-    All nodes of the tests use one loop. So tests can share a node and its bridge.
+    All nodes of the tests use one event loop, so that tests can share a node and its bridge.
     """
 
     version: int
@@ -91,7 +91,7 @@ class Network(abc.ABC):
         """The environment variables with which a process finds the network."""
 
     def node(self, **options: Any) -> Node:
-        """Return a new node, as an agent makes it. Use it on a loop, and close it."""
+        """Return a new node, as an agent makes it. The test must use the node on a loop, and close it."""
         settings = self.module.Settings(**self.settings[f"ros{self.version}"], definitions=(OWN,), **options)
         return self.module.make_node(settings)
 

@@ -53,7 +53,7 @@ def main():
         return response
 
     async def silent(request, response):
-        await Future()  # never answers, and occupies no thread
+        await Future()  # this service never answers, and occupies no thread
         return response
 
     def count(goal):

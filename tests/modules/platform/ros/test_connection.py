@@ -22,7 +22,7 @@ def wire(*bodies: bytes) -> bytes:
 def receive(main: Callable[[socket.socket, Taken, list[str]], Awaitable[None]], *, first: bytes = b"") -> None:
     """Run a test of a connection from a publisher.
 
-    It gets the publisher's socket, a list of the messages that have arrived, and a list of other events.
+    The test gets the publisher's socket, a list of the messages that have arrived, and a list of other events.
     """
 
     async def run() -> None:
@@ -48,7 +48,7 @@ def receive(main: Callable[[socket.socket, Taken, list[str]], Awaitable[None]], 
 def send(main: Callable[[ToSubscriber, socket.socket, list[bool]], Awaitable[None]]) -> None:
     """Run a test of a connection to a subscriber.
 
-    It gets the connection, the subscriber's socket, and a list that is not empty once the connection is lost.
+    The test gets the connection, the subscriber's socket, and a list that is empty until the connection is lost.
     """
 
     async def run() -> None:

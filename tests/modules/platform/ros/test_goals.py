@@ -48,7 +48,7 @@ def test_an_action_without_a_server_fails(ros1_network: Network) -> None:
     ros1_network.run(main)
 
 
-def test_a_goal_fails_if_its_restarted_server_no_longer_knows_it(ros1_network: Network) -> None:
+def test_a_goal_fails_if_the_action_server_restarts_and_no_longer_knows_the_goal(ros1_network: Network) -> None:
     """The test acts as the action server. After a restart, a server lists no goals."""
 
     async def main() -> None:

@@ -344,7 +344,7 @@ class Server:
         return JSONResponse(await getattr(self, f"do_{order}")(bot, **a))
 
     async def do_say(self, bot: str, chat: int, text: str | None = None, user: int | None = None, **fields: Any) -> Any:
-        """Let a user write a message. `fields` are more fields of the message."""
+        """Let a user write a message. `fields` are additional fields of the message."""
         user = user or chat
         self.db.execute("INSERT OR REPLACE INTO chats VALUES (?, ?, 'open')", (bot, chat))
         sender = {"id": user, "is_bot": False, "first_name": f"User{user}", "username": f"user{user}"}
@@ -433,7 +433,7 @@ class Server:
         return json.loads(data)
 
     async def do_left(self, bot: str) -> Any:
-        """Return how many updates the bot has not confirmed yet."""
+        """Return the number of updates that the bot has not confirmed yet."""
         return len(self.updates(bot))
 
 

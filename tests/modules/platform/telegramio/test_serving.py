@@ -260,7 +260,7 @@ async def test_in_a_private_chat_a_growing_answer_is_a_draft_and_then_a_message(
         go.set()
         assert (await bot.said(3))[2:] == ["8: I think so."]
         go.clear()
-        await bot.do("fault", method="sendMessageDraft", kind="404")  # as from an older server
+        await bot.do("fault", method="sendMessageDraft", kind="404")  # as an older server answers
         await bot.say(9, "Is it?")
         await bot.do("called", method="sendChatAction", count=2)
         go.set()

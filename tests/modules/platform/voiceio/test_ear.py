@@ -42,7 +42,7 @@ def test_speech_after_a_pause_continues_the_turn() -> None:
     assert turn is not None and turn.start < 0.7 and turn.end > 2.4
 
 
-def test_another_person_who_speaks_without_a_pause_gets_a_separate_turn() -> None:
+def test_a_second_person_who_speaks_directly_after_the_first_gets_a_separate_turn() -> None:
     first = spoken("I would like to go to the station.", "espeak:en-us")
     ear = Ear()
     pcm = track((0.5, first + spoken("No, that is much too far for us.", "espeak:en+f3")), length=5.0)

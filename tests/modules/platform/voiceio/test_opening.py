@@ -187,7 +187,7 @@ def test_a_file_and_a_device_can_be_combined(
 
 
 def test_a_recognition_that_fails_after_its_rule_was_cancelled_is_not_reported(monkeypatch: pytest.MonkeyPatch) -> None:
-    """This happens at Ctrl-C, which kills the process of the model during its work."""
+    """Ctrl-C causes such a failure: it kills the model's process while the model works."""
     failures: list[object] = []
     judging = threading.Event()
 
@@ -218,7 +218,7 @@ def test_a_recognition_that_fails_after_its_rule_was_cancelled_is_not_reported(m
 @pytest.mark.parametrize(
     ("text", "confidence", "length", "what"),
     [
-        ("Amen.", 0.5, 0.3, "false_alarm"),  # a recogniser can take a hum for this word
+        ("Amen.", 0.5, 0.3, "false_alarm"),  # a recogniser can mistake a hum for this word
         ("Mm-hmm.", 0.5, 0.5, "back_channel"),
         ("Stop.", 0.5, 0.3, "utterance"),
         ("Why?", 0.8, 0.3, "utterance"),

@@ -1,4 +1,4 @@
-"""Spoken conversations of agents with recordings, in virtual time."""
+"""An agent holds spoken conversations with a recorded user, in virtual time."""
 
 from __future__ import annotations
 
@@ -33,7 +33,7 @@ TELL = (0.5, "Please tell me a story.")
 
 
 def script(monkeypatch: pytest.MonkeyPatch, *texts: str | Exception, confidence: float = 0.9) -> Scripted:
-    """Replace the recogniser by one that returns these texts for any sound."""
+    """Replace the recogniser with a stand-in that returns these texts, whatever the sound."""
     one = Scripted(*texts, confidence=confidence)
     monkeypatch.setattr(opening, "Recogniser", one)
     return one
@@ -48,7 +48,7 @@ def settings(**changed: Any) -> dict[str, dict[str, Any]]:
 
 
 def loud(file: Path, begin: float, end: float) -> bool:
-    """Return whether the loudspeaker's file has sound between two times (seconds)."""
+    """Return whether the output file has sound between two times (seconds)."""
     with wave.open(str(file)) as out:
         sound = np.frombuffer(out.readframes(out.getnframes()), "<i2").astype(int)
     part = sound[round(begin * 24000) : round(end * 24000)]
@@ -56,7 +56,7 @@ def loud(file: Path, begin: float, end: float) -> bool:
 
 
 def test_the_agent_hears_a_request_and_its_answer_can_be_heard(tmp_path: Path) -> None:
-    """The real recogniser transcribes the user, and then the agent in the loudspeaker's file."""
+    """The real recogniser transcribes the user's recording, and then the agent's speech in the output file."""
     heard: list[voiceio.Utterance] = []
     module = rs.Module("listener", requires=[voiceio])
 
@@ -78,7 +78,7 @@ def test_the_agent_hears_a_request_and_its_answer_can_be_heard(tmp_path: Path) -
 
 
 def test_the_same_recording_gives_the_same_conversation(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
-    """The sound of the voice depends on earlier sentences. But speech for other purposes must not change it."""
+    """Earlier sentences change the sound of the voice. Speech from another synthesiser must not change it."""
     file = wav(tmp_path / "in.wav", track(TELL, (5.0, "No, stop."), length=8.0))
     other = Synthesiser(Settings(voice=FAST["voiceio"]["voice"]))
     runs: list[tuple[list[Said], str]] = []
@@ -172,7 +172,7 @@ def test_a_long_interruption_stops_the_agent_before_the_user_has_finished(
     assert len(stopped) == 1 and 6.0 < stopped[0] < 6.5
 
 
-def test_after_each_output_the_slot_heard_gets_the_words_that_the_user_heard(
+def test_rawio_heard_holds_the_words_that_the_user_heard_of_each_output(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     script(monkeypatch, "Tell me a story.", "Stop.")
@@ -231,7 +231,7 @@ def test_pieces_are_spoken_once_and_a_different_output_is_spoken_after_them(
     tmp_path: Path,
     monkeypatch: pytest.MonkeyPatch,
 ) -> None:
-    """The pieces can end with a space that the output lacks. The rule does not set the flag ``rawio.speaking``."""
+    """The pieces can end with a space that the output lacks. The rule does not set ``rawio.speaking``."""
     script(monkeypatch, "Tell me a story.")
     file = wav(tmp_path / "in.wav", track(TELL, length=3.0))
     said = talk(file, None, teller(pieces, *outputs), settings=settings(filler_after=0))
@@ -267,7 +267,9 @@ def test_the_words_of_two_people_are_two_utterances(tmp_path: Path, monkeypatch:
     assert len(said) == 2 and said[0].end < said[1].start
 
 
-def test_the_signal_hearing_carries_the_words_so_far(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+def test_the_signal_rawio_hearing_carries_the_words_recognised_so_far(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
     script(monkeypatch, "I", "I would", "I would like a story.")
     seen: list[str] = []
     module = rs.Module("listener", requires=[rawio])
@@ -321,10 +323,10 @@ def test_the_agent_is_not_bored_while_it_speaks(tmp_path: Path, monkeypatch: pyt
     assert bored and not any(story.start < time < story.end + 2.9 for time in bored)
 
 
-def test_if_a_platform_serves_users_voiceio_uses_its_line_and_opens_no_device(
+def test_voiceio_uses_the_line_of_a_platform_that_serves_users_and_opens_no_device(
     monkeypatch: pytest.MonkeyPatch, tmp_path: Path
 ) -> None:
-    """A platform with many users, such as the web page, provides a line for each user."""
+    """The web page, for example, provides a line (a microphone and a loudspeaker) for each of its users."""
     from ravestate.modules.platform.voiceio.wav_line import WavLine
     from ravestate.testing import simulate
 
@@ -347,7 +349,7 @@ def test_if_a_platform_serves_users_voiceio_uses_its_line_and_opens_no_device(
 def test_a_line_that_a_platform_provides_at_the_start_is_opened_only_once(
     monkeypatch: pytest.MonkeyPatch, tmp_path: Path
 ) -> None:
-    """A page can provide its line as soon as the context starts."""
+    """A page can provide the line of its user as soon as the context starts."""
 
     from modules.platform.voiceio.test_wav_line import run
     from ravestate.modules.platform.voiceio.wav_line import WavLine
@@ -372,8 +374,10 @@ def test_a_line_that_a_platform_provides_at_the_start_is_opened_only_once(
     assert opened[0] is opened[1]
 
 
-def test_an_output_that_cannot_be_written_ends_the_agent(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
-    """An impossible path ends the agent at the start. A file that becomes unwritable later ends it at the end."""
+def test_an_output_file_that_cannot_be_written_ends_the_agent_with_an_error(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """A path without .wav fails at the start. A file that becomes unwritable fails when the conversation is over."""
     script(monkeypatch, "Hello.")
     file, out = wav(tmp_path / "in.wav", track(TELL, length=2.0)), tmp_path / "out.wav"
     with pytest.raises(PlatformError, match=r"ends in \.wav"):

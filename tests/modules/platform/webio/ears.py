@@ -53,7 +53,7 @@ def babble(seconds: float, rate: int = rawio.IN_RATE) -> bytes:
     background=True,
 )
 async def listen(ctx: rs.RuleContext) -> None:
-    """Turn each loud period into an input. During it, report its length so far."""
+    """Turn each loud period into an input. While a period lasts, report its length so far."""
     line = ctx.payload(rawio.sound.changed)
     loud = quiet = told = 0.0
     async for block in line.blocks():

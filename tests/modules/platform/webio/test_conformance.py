@@ -1,6 +1,6 @@
 """The web page passes the checks for platforms.
 
-Conversations live in memory, so a crash would lose them. Here the checks lose all connections instead.
+Conversations live in memory, so a crash would lose them. So these checks break all connections instead.
 """
 
 import asyncio

@@ -144,7 +144,7 @@ async def test_the_server_drops_a_client_whose_bursts_have_too_low_an_average_ra
     size, each = 10**7, int(LOWEST_RATE * TIMEOUT)
     caller = Caller(Reader())
     caller.send(request(size))
-    while caller.hung_up is None:  # each burst is half of the data that should come in its time
+    while caller.hung_up is None:  # each burst has half of the data that the lowest rate requires
         caller.send(b"x" * each)
         await past(2 * TIMEOUT)
         assert asyncio.get_running_loop().time() < 10 * TIMEOUT

@@ -196,7 +196,7 @@ async def test_the_setting_title_overrides_the_agents_own_name() -> None:
 
 
 @in_virtual_time
-async def test_a_visitor_who_leaves_reads_you_left_and_others_the_visitor_left() -> None:
+async def test_after_bye_the_page_says_you_left_and_the_log_says_the_visitor_left() -> None:
     async with page(parrot) as app, Visit(app) as visit, Visit(app) as window:
         await visit.hello()
         await window.hello(session=visit.session)
@@ -209,7 +209,7 @@ async def test_a_visitor_who_leaves_reads_you_left_and_others_the_visitor_left()
 
 
 @pytest.mark.parametrize("ending", [ending for ending in Ending if ending is not Ending.BYE])
-def test_for_all_other_endings_the_visitor_reads_the_same_reason_as_others(
+def test_for_each_other_ending_the_page_and_the_log_give_the_same_reason(
     ending: Ending,
 ) -> None:
     assert ending.for_visitor == str(ending)

@@ -226,7 +226,7 @@ async def test_the_failure_of_an_agent_ends_its_conversation_with_a_message(
 
 
 @in_virtual_time
-async def test_if_there_are_too_many_conversations_abandoned_ones_end_visitors_who_never_spoke_first() -> None:
+async def test_at_the_limit_the_abandoned_conversation_of_a_silent_visitor_ends_before_that_of_a_talker() -> None:
     async with page(sessions=3) as app, Visit(app) as present:
         await present.hello()
         async with Visit(app) as talker:
