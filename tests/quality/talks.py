@@ -12,7 +12,16 @@ from end_to_end.conversation import Conversation
 from quality import measure
 from ravestate.modules.skill.wildtalk.small_talk import learn_all
 
-FLOORS = {"show": 0.85, "repair": 0.8, "offence": 0.9, "self": 0.8, "news": 0.9, "bye": 0.9, "advice": 0.9, "closing": 0.8}
+FLOORS = {
+    "show": 0.85,
+    "repair": 0.8,
+    "offence": 0.9,
+    "self": 0.8,
+    "news": 0.9,
+    "bye": 0.9,
+    "advice": 0.9,
+    "closing": 0.8,
+}
 """The minimum share of fitting answers for each cause."""
 
 
