@@ -84,9 +84,11 @@ def closing_of(tree: Tree, sentences: Sequence[str]) -> Closing | None:
         places.append(text.find(one.lower().rstrip(".?!"), places[-1]))
     places = places[1:]
     words = [word for word in tree.words if word.start >= places[-1] and word.pos != "PUNCT"]
+    if min(places) < 0 or len(words) < SHORTEST:
+        return None
     pointing = any(word.low in _POINTING and word.dep != "expl" for word in words[1:])
     needing = pointing or words[0].low in _POINTING - {"so"} or words[-1].low in _JUDGING
-    if min(places) < 0 or len(words) < SHORTEST or needing:
+    if needing:
         return None
     if not (_requests(words) or (last.endswith("?") and any(word.pos in VERBAL for word in words))):
         return None
