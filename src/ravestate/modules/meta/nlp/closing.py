@@ -87,8 +87,7 @@ def closing_of(tree: Tree, sentences: Sequence[str]) -> Closing | None:
     if min(places) < 0 or len(words) < SHORTEST:
         return None
     pointing = any(word.low in _POINTING and word.dep != "expl" for word in words[1:])
-    needing = pointing or words[0].low in _POINTING - {"so"} or words[-1].low in _JUDGING
-    if needing:
+    if pointing or words[0].low in _POINTING - {"so"} or words[-1].low in _JUDGING:
         return None
     if not (_requests(words) or (last.endswith("?") and any(word.pos in VERBAL for word in words))):
         return None
