@@ -105,6 +105,7 @@ def _kind(tree: Tree, words: Sequence[Word], clauses: Sequence[Clause]) -> Quest
         return QuestionWord.YES_NO if low or asked else None
     after = words[2:] if low[1:2] == ["n't"] else words[1:]
     inverted = low[0] in AUXILIARIES and len(after) > 1 and after[0].pos in _NOMINAL  # as in "do dogs dream"
+    inverted = inverted and not (words[0].lemma == "have" and words[0].pos == "VERB")  # "had a swarm settle on my hat"
     if (likely and inverted) or _lacks_auxiliary(words, clauses):
         return QuestionWord.YES_NO
     bare = low[-2:] in (["and", "you"], ["and", "yours"]) or low[0] in _ANY or low[1:2] == ["any"]

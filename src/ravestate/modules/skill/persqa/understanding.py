@@ -296,7 +296,7 @@ class _Hearing:
         match = self.seen.act("identify")
         if other or match is None or match.text.endswith("?"):  # "me?"
             return None
-        return Meaning("identified")
+        return Meaning("identified", leave=self.leave, aloud=not self.leave)
 
     def inquiry(self) -> Meaning | None:
         """Return the meaning of a question about the user, or about something that they told."""

@@ -294,7 +294,7 @@ def _word(seen: Analysis) -> str:
 def _picked(phrases: Material, words: Sequence[Word], turn: int) -> str:
     """Return things of the kind that a noun names: for *three animals*, three of them."""
     for word in reversed(words):
-        things = phrases.picks.get(word.lemma.lower(), ())
+        things = phrases.picks.get(word.lemma.lower(), ()) if word.dep != "npadvmod" else ()  # not "the day after"
         if things and word.pos in ("NOUN", "PROPN", "NUM", "ADJ", "VERB"):
             many = max((MANY.get(one.low, 1) for one in words), default=1)
             chosen = [things[(turn + place) % len(things)] for place in range(min(many, len(things)))]

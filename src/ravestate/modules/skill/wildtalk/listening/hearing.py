@@ -15,6 +15,7 @@ from ravestate.language.contractions import word_set
 from ravestate.language.feelings import SORROWS
 from ravestate.language.matcher import Match
 from ravestate.language.nonsense import is_nonsense
+from ravestate.language.normal import plain
 from ravestate.modules.meta.nlp.analysis import ADVICE, Analysis
 from ravestate.modules.meta.nlp.question_word import QuestionWord
 from ravestate.modules.meta.nlp.statement import Statement
@@ -168,7 +169,7 @@ def _understand(found: Hearing, phrases: Material, heard: Heard, seen: Analysis,
     found.moment = "" if moment is None else moment.name
     found.meanings = _ranked(phrases, seen, state, found, asking, score, feeling)
     found.sad = feeling is not None and feeling.tone == "sad"
-    found.near = near_in(phrases, seen, asking, state, feeling)
+    found.near = near_in(phrases, seen, asking, state, feeling, being=roles.being)
     dark = is_dark(seen, found.near) or found.sad
     found.tone = "sad" if dark else _tone(seen, found.moves, feeling)
     found.mood = "quiet" if state.tone == "sad" and found.tone in ("", "glad", "funny") else found.tone
@@ -255,9 +256,9 @@ def _tone(seen: Analysis, moves: Sequence[str], feeling: Moment | None) -> str:
 
 
 def _leaves(seen: Analysis) -> bool:
-    """Return whether the last of several sentences is a farewell: *that helped a bit. she's waking up, gotta run*."""
+    """Return whether an utterance ends with a farewell: *that helped a bit. she's waking up, gotta run*."""
     match = seen.acts.get("farewell")
-    return match is not None and len(seen.sentences) > 1 and match.score >= MEANT and match.text == seen.sentences[-1]
+    return match is not None and match.score >= MEANT and plain(seen.text).endswith(f" {plain(match.text)}")
 
 
 def likely(phrases: Material, seen: Analysis) -> tuple[str, ...]:

@@ -54,11 +54,13 @@ _LAST = word_set("lol haha btw tho though lmao xd pls please again too")
 _PLACES = ("GPE", "LOC", "FAC", "EVENT", "PRODUCT", "WORK_OF_ART", "NORP")
 """Kinds of names that may be a highlight."""
 _PRONOUNS = word_set("mine yours his hers ours theirs")
-_DROPPED = word_set("some any such whatever")
-"""Determiners that do not stand well at the beginning of an exclamation."""
+_DROPPED = word_set("some any such whatever its maybe perhaps probably")
+"""Words that do not stand well at the beginning of an exclamation. *Its* mostly is a typed *it's*."""
 _PLACING = word_set("in on under behind off onto into over without inside across around through between among outside")
 """Prepositions with which a highlight may begin."""
 _DENYING = DENYING | word_set("without")
+_COMPARING = word_set("like than as per versus")
+"""Prepositions whose phrases are no part of a thing: *a cup of water like a lunatic*."""
 _IMAGINING = IMAGINING | word_set("if unless whether")
 
 
@@ -182,7 +184,8 @@ def _phrases(tree: Tree, noun: Word, inside: set[int]) -> Iterator[list[Word]]:
         after = next((word for word in tree.words if word.index == grown[-1].index + 1), None)
         if after is None or after.index not in inside:
             return
-        if after.pos == "ADP" and after.dep in ("prep", "agent") and not tree.children(after, "pcomp"):
+        loose = after.low in _COMPARING or (noun.pos == "PROPN" and after.low not in ("of", "to"))  # "from Ghent with a bad hip"
+        if after.pos == "ADP" and after.dep in ("prep", "agent") and not loose and not tree.children(after, "pcomp"):
             more = tree.subtree(after)
         elif (after.low in ("again", "too") or (after.low == "of" and after.dep == "prep")) and after.pos != "VERB":
             more = [after]

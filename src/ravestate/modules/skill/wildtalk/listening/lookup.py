@@ -2,12 +2,14 @@
 
 from __future__ import annotations
 
+import re
 from collections.abc import Sequence
 from dataclasses import replace
 
 from ravestate.language.normal import plain
 from ravestate.language.shape import shape
 from ravestate.modules.meta.nlp.analysis import Analysis
+from ravestate.modules.meta.nlp.tree import SUBJECTS
 
 from .asked import about
 from .asking import kind_of
@@ -16,7 +18,7 @@ from .echo import words_of
 from .grave import is_grave
 from .material import Material
 from .moment import Moment
-from .state import State
+from .state import Being, State
 from .tones import DARK, tone_of
 
 BRIEFLY = 5
@@ -34,17 +36,25 @@ DARKLY = 0.5
 """The least probability with which a sad entry of the bank makes an utterance dark."""
 LEADING = 0.1
 """The advantage of an entry with follow-ups: after its reply, the user's next words are understood better."""
+_THEY = frozenset(("he", "she", "they", "it"))
 BESIDE = 4
 """The minimum number of words of a sentence beside others that is compared with the bank: *ok*, *well* say too little."""
 
 
 def near_in(
-    phrases: Material, seen: Analysis, asking: str, state: State, feeling: Moment | None, *, roughly: bool = False
+    phrases: Material,
+    seen: Analysis,
+    asking: str,
+    state: State,
+    feeling: Moment | None,
+    *,
+    being: Being | None = None,
+    roughly: bool = False,
 ) -> list[Found]:
     """Return the entries of the bank that resemble an utterance or one of its sentences, the most suitable first.
 
-    If the user asks something, only the question counts. Nobody is cheered up in a sad talk. With
-    `roughly`, the probabilities are estimated without the cross-encoder.
+    If the user asks something, only the question counts. Nobody is cheered up in a sad talk. A pronoun may also stand
+    for `being`, which was mentioned before. With `roughly`, the probabilities are estimated without the cross-encoder.
     """
     sentences = seen.sentences[:6]
     longer = [sentence for sentence in sentences if len(sentence.split()) >= BESIDE]
@@ -57,7 +67,10 @@ def near_in(
     kind, persons = kind_of(asking) if asking else "", persons_in(seen.normal.text)
     grave = is_grave(seen.normal.text)
     ranked: list[Found] = []
-    for one in phrases.bank.similar(texts, seen.text, roughly=roughly):
+    found = phrases.bank.similar(texts, seen.text, roughly=roughly)
+    if being is not None and (meant := spelled_out(seen, being)):  # "he is in hospital" after "my dad"
+        found += phrases.bank.similar([meant], meant, roughly=roughly)
+    for one in found:
         tone = one.moment.tone
         crossed = (tone == "glad" and mood in DARK) or (tone in DARK and mood == "glad")
         crossed = crossed or (grave and tone not in DARK and one.score < CLOSE)
@@ -68,6 +81,19 @@ def near_in(
         share = LONGER if len(seen.tree.words) >= LONG and one.score < CLOSE else 1.0
         ranked.append(replace(one, fit=one.fit * share * (1 - CROSSED * crossed)))
     return sorted(ranked, key=lambda one: -one.fit - LEADING * bool(one.moment.follows))
+
+
+def spelled_out(seen: Analysis, being: Being) -> str:
+    """Return an utterance with a being in place of its first pronoun: *my dad is in hospital* for *he is in hospital*.
+
+    Empty if no pronoun is the subject.
+    """
+    own = re.sub(r"\byour\b", "my", being.text)
+    for word in seen.tree.words:
+        if word.low in _THEY and word.dep in SUBJECTS:
+            text = seen.tree.text
+            return f"{text[: word.start]}{own}{text[word.end :]}"
+    return ""
 
 
 def is_dark(seen: Analysis, near: Sequence[Found]) -> bool:

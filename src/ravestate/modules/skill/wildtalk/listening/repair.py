@@ -28,7 +28,7 @@ _TOLD_TO = re.compile(r"\b(?:with|to) (?:my|a|the|him|her|them|somebody|some)\b|
 """Words of a report: *I was talking about it with my mother*."""
 _REJECTS = re.compile(
     r"^(?:that|this|it) (?:is|was) (?:not (?:what|about|an answer|my|the)|(?:for |about )?(?:\w+ ){0,2}(?:advice|tip|answer|question"
-    r"|line|reply|recipe)\b|(?:about|for) \w+(?: \w+)?$)"
+    r"|line|reply|recipe)\b|(?:about|for) (?P<of>\w+)(?: \w+)?$)"
     r"|^i (?:did not|was not|never|do not) (?:\w+ )?(?:ask|asking|mean|talk|talking|say|said|speak|speaking)\b"
     r"|^you (?:misunderst|got (?:me|it|that) wrong|are not listening|did not answer|ignored)"
     r"|^(?:that|this|it) (?:makes|made) no sense|^(?:you are|that is) (?:off|beside) "
@@ -132,8 +132,8 @@ def _mark(text: str, state: State) -> str:
         return "" if state.said[-1].endswith("?") else "why"
     if len(text.split()) > LONGEST + 3:
         return ""
-    if _REJECTS.search(text):
-        return "meant"
+    if (rejects := _REJECTS.search(text)) and (not rejects["of"] or rejects["of"] in plain(state.said[-1]).split()):
+        return "meant"  # "that was for dogs", after an answer about dogs
     puzzled = _PUZZLED.search(text)
     if puzzled is None:
         return ""

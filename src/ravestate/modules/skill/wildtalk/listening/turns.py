@@ -16,7 +16,7 @@ _CRY = re.compile(
 )
 """A complaint in the form of a question, if it ends with an exclamation mark or is in capitals."""
 _LEAVING = re.compile(
-    r"(?:^|[,.!?]|\b(?:bye|and|so|ok|well|then)) *(?:(?:good)?bye|good ?night|adieu|ciao|chau|adios|farewell)(?:,? (?!to\b)\w+){0,3}"
+    r"(?:^|[,.!?]|\b(?!(?:say|said|says|saying|wave|waved|a|my|his|her|our|their|the|last|final|no)\b)\w+) *(?:(?:good)?bye|good ?night|adieu|ciao|chau|adios|farewell)(?:,? (?!to\b)\w+){0,3}"
     r"(?: and thanks?\b[\w ]*)?\W*$|^(?:(?:ok|well|so|then|right|now|alright)\W+)*(?:good)?bye\b(?! to\b)"
     r"|(?:^|[,.!] *|\b(?:and|so|then) )(?:see|talk to|speak to|catch) (?:you|ya|u) (?:soon|later|tomorrow|then|around|next \w+|on \w+day)\b[\w ,]*\W*$"
     r"|(?:^|[,.!] *|\band )have an? (?:very )?(?:nice|good|great|lovely|wonderful|pleasant) (?:day|evening|night|weekend|afternoon|week|one|time|rest"
