@@ -22,7 +22,7 @@ from .question import Parse, Question, as_question
 from .shipped import bring_up
 from .stems import Stems
 
-RETRIEVED = 16
+RETRIEVED = 20
 """The maximum number of passages in each of two searches: for any word of the question, and for all its words."""
 READ = (1, 1, 2, 4, 8, 8)
 """The sizes of the batches in which passages are read until one is good enough. Only a follow-up uses the last two."""
@@ -221,7 +221,7 @@ class Answerer:
             ):
                 retrieved.append((covered, each))
         # The sort is stable, so passages with equal shares stay in the order of BM25.
-        return sorted(retrieved, key=lambda each: -each[0])
+        return sorted(retrieved, key=lambda each: (-each[0], not _is_plain(question, each[1].text)))
 
     def _read(self, question: Question, retrieved: Sequence[tuple[float, Found]]) -> list[Candidate]:
         read: list[Candidate] = []
@@ -244,7 +244,7 @@ class Answerer:
         # Among equals, take the passage with the fewest other words: "life expectancy", not "life expectancy of women".
         level = [c for c in read if c.score > read[0].score - LEVEL and c.covered >= read[0].covered]
         asked = {form for word in question.words for form in variants_of(word.lower())}
-        first = min(level, key=lambda candidate: _besides(candidate.text, asked))
+        first = min(level, key=lambda one: (not _is_plain(question, one.text), _besides(one.text, asked)))
         return [first, *(c for c in read if c is not first)]
 
 
@@ -292,6 +292,23 @@ def _can_answer(question: Question, found: Found) -> bool:
     if (does and " by " not in found.text) or (kind is QuestionWord.PLACE and "where" not in asked):
         return any(name.lower() not in asked for name in (*_NAME.findall(found.text), *found.title.split()))
     return True
+
+
+_WORLD = re.compile(r"\b(?:in|of) the world\b|\bon earth\b|\bof all\b", re.IGNORECASE)
+
+
+def _is_plain(question: Question, text: str) -> bool:
+    """Return whether a passage is about just what the question names.
+
+    It begins with the question's subject: *Clouds are made of droplets*, not *Cirrus clouds consist of ice*. To a question
+    such as *what is the longest river*, it speaks of the whole world.
+    """
+    asked = question.text.lower()
+    ranked = any(word.endswith("est") or word == "most" for group in question.needs for word in group)
+    if ranked and not _WORLD.search(asked):
+        return _WORLD.search(text) is not None
+    first = re.escape(question.words[0]) if question.words else ""
+    return bool(first) and re.match(rf"(?:an? |the )?{first} (?!about\b)", text, re.IGNORECASE) is not None
 
 
 def _besides(text: str, asked: set[str]) -> int:

@@ -216,6 +216,8 @@ def _is_anybody(heard: Parse, word: Word) -> bool:
         return heard.kind in (QuestionWord.AMOUNT, QuestionWord.REASON, QuestionWord.OBJECT)
     if word.dep not in ("nsubj", "nsubjpass") or verb.pos not in ("VERB", "AUX") or word.low not in ("you", "i"):
         return False
+    if verb.dep == "ccomp" and heard.tree.head(verb).lemma == "make":  # "why do onions make you cry"
+        return heard.kind is QuestionWord.REASON and not {"i", "me", "my"} & {other.low for other in heard.tree.words}
     helpers = heard.tree.children(verb, "aux")
     things = [other for other in heard.tree.subtree(verb) if other.pos in ("NOUN", "PROPN")]
     if any(helper.tag == "VBD" for helper in helpers) or verb.tag == "VBD":

@@ -18,7 +18,7 @@ SHIPPED = "ravestate:collection"
 OWN = "Ravestate's own collection"
 """The source of the sentences that were written for Ravestate."""
 _FACTBOOK = "world-factbook.jsonl.gz"
-_GENERAL = ("general.yaml", "people.yaml", "nature.yaml", "culture.yaml")
+_GENERAL = ("general.yaml", "people.yaml", "nature.yaml", "culture.yaml", "everyday.yaml")
 
 
 def bring_up(index: Index, *, wanted: bool = True) -> bool:

@@ -184,7 +184,9 @@ def _phrases(tree: Tree, noun: Word, inside: set[int]) -> Iterator[list[Word]]:
         after = next((word for word in tree.words if word.index == grown[-1].index + 1), None)
         if after is None or after.index not in inside:
             return
-        loose = after.low in _COMPARING or (noun.pos == "PROPN" and after.low not in ("of", "to"))  # "from Ghent with a bad hip"
+        loose = after.low in _COMPARING or (
+            noun.pos == "PROPN" and after.low not in ("of", "to")
+        )  # "from Ghent with a bad hip"
         if after.pos == "ADP" and after.dep in ("prep", "agent") and not loose and not tree.children(after, "pcomp"):
             more = tree.subtree(after)
         elif (after.low in ("again", "too") or (after.low == "of" and after.dep == "prep")) and after.pos != "VERB":
