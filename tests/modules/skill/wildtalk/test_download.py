@@ -197,7 +197,7 @@ def test_a_second_process_is_refused(hub: Hub) -> None:
 
     with pytest.MonkeyPatch.context() as patch:
         patch.setattr(fcntl, "lockf", locked)
-        with pytest.raises(PlatformError, match="another process fetches tiny"):
+        with pytest.raises(PlatformError, match="another process is fetching tiny"):
             fetch()
 
 

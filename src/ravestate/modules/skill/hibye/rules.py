@@ -18,7 +18,7 @@ from .names import goodbye, greeted, hello, module, parted
 JUST_NOW = 60.0
 """For this many seconds after a greeting or a goodbye, the agent does not repeat it."""
 GENERAL = 0.15
-"""The weight of the answers: so low that almost any other rule for the same words outranks them."""
+"""The weight of the answers. It is so low that almost any other rule that can answer outranks them."""
 
 
 @module.rule(
@@ -83,6 +83,6 @@ def _partings() -> Matcher:
 
 
 def _goes_to_bed(text: str) -> bool:
-    if bundled_matcher("acts").loaded:  # else, only words that equal an example are recognised
+    if bundled_matcher("acts").loaded:  # if not, only words that equal an example are recognised
         _partings().load()
     return any(_partings().match_all(heard(text)))

@@ -19,13 +19,13 @@ from .state import LASTING
 
 AGREEING = frozenset(("are", "were", "have", "do"))
 MOMENTS = ("about_the_talk", "advice", "everyday", "grown", "young", "questions", "life", "reactions", "moments")
-"""The files of situations in a talk. Each situation names the moves for which it may answer."""
+"""The files of moments (situations in a conversation). Each moment names the moves that its phrases suit."""
 _NOT_GROUPS = frozenset(("examples", "nouns", "verbs", "tone", "lasts", "heads", "moves", "least", "after"))
 
 
 @dataclass(frozen=True, slots=True)
 class Row:
-    """A row of the table of answers."""
+    """A row of the table of answers (order.yaml)."""
 
     needs: frozenset[str]
     without: frozenset[str]
@@ -49,7 +49,7 @@ class Material:
             Matcher({one.name: one.examples for one in moments.values()}, none, least=0.45)
             for moments in files.values()
         ]
-        """One matcher per file. Several small matchers learn faster than one with all examples."""
+        """One matcher per file, because several small matchers learn faster than one large matcher."""
         self.bank: Bank = read_bank()
         self.heads = {name: frozenset[str](words) for name, words in _read("heads").items()}
         self.replies = _moments("replies")
@@ -60,7 +60,7 @@ class Material:
         self.picks: Mapping[str, Sequence[str]] = _read("picks")
         self.plain = {**_moments("plain"), **self.replies}
         self.taking_up = _moments("taking_up")
-        """Frames, questions and remarks that take up a statement."""
+        """Phrases with a gap for the highlight, questions, and remarks that take up a statement."""
         self.order = [_row(row) for row in _read("order")]
         self.shows: Mapping[str, Any] = _read("shows")
         self.tongues = {name: frozenset[str](words) for name, words in _read("tongues").items()}

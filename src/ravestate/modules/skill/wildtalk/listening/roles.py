@@ -52,7 +52,7 @@ class Roles:
         return replace(self, values={**self.values, **{name: value for name, value in values.items() if value}})
 
     def fill(self, text: str) -> str:
-        """Return a phrase with its roles filled. The value of a role that is written with a capital gets a capital."""
+        """Return a phrase with its roles filled. If a role begins with a capital (``{Who}``), so does its value."""
         parts = ROLE.split(text)  # text, role, text, role, ...
         for place in range(1, len(parts), 2):
             role = parts[place]
@@ -117,7 +117,7 @@ def has_verb(seen: Analysis) -> bool:
 
 
 def is_request(seen: Analysis) -> bool:
-    """Return whether the user demands something: *prove it*."""
+    """Return whether the utterance is an order: *prove it*."""
     words = [word for word in seen.tree.words if word.pos not in ("PUNCT", "INTJ")]
     first = words[0] if len(words) > 1 or (words and (seen.acts or seen.asks)) else None  # "pumpkin" is no verb
     return first is not None and first.pos == "VERB" and first.dep == "ROOT" and first.tag in ("VB", "VBP")
@@ -129,7 +129,7 @@ def _is_aside(tree: Tree, verb: Word) -> bool:
 
 
 def _statement(seen: Analysis, sentence: str) -> Statement | None:
-    """Return the statement of the sentence that matters most, by default the last sentence."""
+    """Return the most important statement of `sentence`; if it has none, of the whole utterance."""
     told = [one for one in seen.statements if all(isinstance(part, str) for part in (one.triple[0], one.triple[2]))]
     low = (sentence or (seen.sentences[-1] if seen.sentences else "")).lower()
 
