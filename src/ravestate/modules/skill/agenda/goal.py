@@ -141,7 +141,7 @@ def goal(
         over = done is None
         ctx[goals].add(whole, GoalState("done" if over else "pursued", state.tries + 1, ctx.now))
         ctx[said] = words if intent is None else intent
-        return rs.Retire("it is said") if over else None
+        return rs.Retire("the goal's words were said") if over else None
 
     def end(ctx: rs.RuleContext, status: Status, *, by_words: bool) -> rs.Resign | None:
         state = ctx[goals].get(whole, OPEN)

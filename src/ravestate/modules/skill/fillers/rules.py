@@ -71,9 +71,9 @@ async def notice_answer(ctx: rs.RuleContext) -> rs.Resign | None:
     """Note that the answer has come or has begun, or that the user says something else."""
     said = ctx.payload(rawio.output.changed)
     if said is not None and said in (ctx[verbaliser.last].get("filler"), ctx[verbaliser.last].get("late")):
-        return rs.Resign("this is the filler")
+        return rs.Resign("this is a filler, or the notice of a delay")
     if said is not None and not said.strip():
-        return rs.Resign("nobody hears an empty answer")
+        return rs.Resign("an empty text is not an answer")
     if said is not None and ctx.payload(rawio.input.changed) not in (None, ctx[rawio.input]):
         return rs.Resign("this answers earlier words of the user")
     ctx[promised] = False

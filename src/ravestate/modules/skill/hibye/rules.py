@@ -39,7 +39,7 @@ async def bid_farewell(ctx: rs.RuleContext) -> rs.Resign | None:
     """Say goodbye to a user who leaves."""
     said = ctx[parted]
     if said is not None and ctx.now - said < JUST_NOW:
-        return rs.Resign("goodbye has been said")
+        return rs.Resign("the agent has just said goodbye")
     name = ctx.payload(interloc.users.removed).item
     ctx[verbaliser.intent] = Intent("farewell", {"name": name}, __package__)
     return None

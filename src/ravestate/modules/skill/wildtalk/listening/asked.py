@@ -192,7 +192,7 @@ def area_of(phrases: Material, tree: Tree, words: Sequence[Word], kind: str) -> 
         phrases: The areas.
         tree: The parse of the utterance.
         words: The words of the question.
-        kind: The kind of the question. A poem *about rain* has the area of the rain.
+        kind: The kind of the question. In requests such as *a poem about rain*, the words after *about* count more.
     """
     weights = {**WEIGHTS, "pobj": 1.5} if kind in ("write", "tell_me", "ask_me") else WEIGHTS
     inside = {word.index for word in words}
@@ -273,7 +273,7 @@ def options_in(tree: Tree, words: Sequence[Word]) -> tuple[str, str, bool] | Non
 
 
 def _cuts(word: Word) -> bool:
-    """Return whether a word cannot be part of the option that follows it."""
+    """Return whether a word ends the words before an option: the option begins after it."""
     return word.pos in _CUT or word.tag in ("JJR", "RBR", "WDT", "WP") or word.low in ("better", "either")
 
 

@@ -82,7 +82,7 @@ def highlight_in(seen: Analysis, words: Sequence[Word], known: str = "", *, aske
         seen: The analysis of the utterance.
         words: The words of its statements.
         known: The user's previous utterance, whose words count less.
-        asked: Whether the words are a question, which asserts nothing.
+        asked: Whether the words are a question. If so, nouns that the user does not assert count, too.
     """
     lexicon, tree = loaded_lexicon(), seen.tree
     before = set(known.lower().split())

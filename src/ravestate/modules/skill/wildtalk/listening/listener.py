@@ -161,7 +161,7 @@ class Listener:
         return replace(said, state=now)
 
     def overhear(self, seen: Analysis, focus: Being | None) -> Overheard:
-        """Return the tone of an utterance, and the being that it mentions. A pronoun, or no being, means `focus`."""
+        """Return the tone of an utterance, and the being that it mentions. A pronoun means the being `focus`."""
         feeling, sentence = feeling_of(self._phrases, seen, "", "")
         tone, lasts = (feeling.tone, feeling.lasts) if feeling is not None else ("", LASTING)
         return Overheard(seen.text, roles_of(seen, sentence, focus, self._phrases).being, tone, lasts)

@@ -35,7 +35,7 @@ class Row:
 
 
 class Material:
-    """All phrases. Made once for all contexts; the matcher learns at its first use."""
+    """All phrases, shared by all contexts. The matchers learn their examples when they are first used."""
 
     def __init__(self) -> None:
         self.feelings = _moments("feelings")
@@ -125,7 +125,7 @@ def _read(name: str) -> Any:
 
 
 def _plain(node: Any) -> Any:
-    """Return the value of a YAML node; every scalar stays text, also *yes* and *no*."""
+    """Return the value of a YAML node. Every scalar is a text, even *yes* and *no*."""
     if node.id == "mapping":
         return {_plain(key): _plain(value) for key, value in node.value}
     return [_plain(one) for one in node.value] if node.id == "sequence" else node.value

@@ -67,7 +67,7 @@ class Repair:
 
 
 def repair_in(seen: Analysis, state: State) -> Repair | None:
-    """Return the repair of an utterance; None if it repairs nothing."""
+    """Return the correction or question about the agent's last answer that an utterance contains; None if it has none."""
     if not state.said:
         return None
     parts = [part for one in seen.sentences[:5] for part in _CLAUSES.split(one)]

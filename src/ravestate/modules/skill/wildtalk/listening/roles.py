@@ -16,7 +16,7 @@ from .moment import ROLE
 from .state import Being
 
 LONGEST = 32
-"""The maximum number of characters in a role."""
+"""The maximum number of characters in the value of a role."""
 
 _THEY = {"f": ("she", "her", "her"), "m": ("he", "him", "his")}
 _IT, _PLURAL = ("it", "it", "its"), ("they", "them", "their")
@@ -34,7 +34,7 @@ TURNED = dict(
         strict=True,
     )
 )
-"""Words → the words that the agent says for them."""
+"""Word of the user → the agent's word for it."""
 _REPEATABLE = re.compile(r"[\w' ,.’-]+")
 
 
@@ -101,7 +101,10 @@ def roles_of(seen: Analysis, sentence: str, focus: Being | None, material: Mater
 
 
 def turned(tree: Tree, words: Sequence[Word]) -> str:
-    """Return a noun phrase from the agent's view: *my brother's dog* becomes *your brother's dog*; empty if odd."""
+    """Return a noun phrase from the agent's view: *my brother's dog* becomes *your brother's dog*.
+
+    A phrase that is too long, or has unusual characters, becomes empty.
+    """
     found = ""
     for word in words:
         text = TURNED.get(word.low, word.text)
@@ -110,7 +113,7 @@ def turned(tree: Tree, words: Sequence[Word]) -> str:
 
 
 def has_verb(seen: Analysis) -> bool:
-    """Return whether there is a verb with a subject, or a request."""
+    """Return whether a verb has a subject, apart from asides such as *I think*."""
     tree = seen.tree
     subjects = [word for word in tree.words if word.dep in ("nsubj", "nsubjpass", "expl", "csubj")]
     return any(not _is_aside(tree, tree.head(word)) for word in subjects)
