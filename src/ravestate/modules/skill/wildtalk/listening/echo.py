@@ -17,7 +17,7 @@ LONGEST, SHORTEST = 15, 2
 """The maximum and the minimum number of words of a statement that can be taken up."""
 
 ASKING = word_set("who what when where why which how whose do does did is are was can could will would should may have")
-"""Closed-class words that begin a question."""
+"""Function words that begin a question."""
 _ASKED = word_set(
     "who what when where why which how whose whether if or you your right correct yes no ok okay huh eh innit"
 )
