@@ -24,7 +24,7 @@ async def answer(ctx: rs.RuleContext) -> None:
     ctx[rawio.output] = "yes"
 
 
-def test_boredom_returns_as_long_as_the_silence_lasts() -> None:
+def test_during_a_silence_the_agent_is_bored_again_and_again() -> None:
     with simulate(watch, settings={"idle": SOON}) as sim:
         sim.say("hello")
         sim.advance(20.0)

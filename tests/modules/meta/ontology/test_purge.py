@@ -1,4 +1,4 @@
-"""Purging removes all bytes of forgotten nodes from the file. Only `forget` of a person waits until they are gone."""
+"""Purging removes all bytes of forgotten nodes from the file. `unrelate` does not wait for the purge; `forget` does."""
 
 from __future__ import annotations
 

@@ -89,7 +89,7 @@ def test_contexts_of_one_process_share_a_file(tmp_path: Path) -> None:
     assert asyncio.run(talk()) == ["Ada of 1", "Bob of 2", "Cy of 3"]
 
 
-def test_the_event_loop_runs_on_while_memory_works(tmp_path: Path) -> None:
+def test_the_event_loop_continues_while_memory_is_busy(tmp_path: Path) -> None:
     async def talk() -> float:
         async with rs.Context(host, settings=at(tmp_path / "m.lbug")) as context:
             memory = context.read(ontology.memory)

@@ -379,7 +379,7 @@ def test_explain_check_and_graph_show_a_goal() -> None:
         sim.advance(8.0)
         assert "finished" in str(sim.explain("guide:game"))
         sim.advance(22.0)  # first the user has time to answer the question, and then the gap between goals passes
-        assert "it was pursued" in str(sim.explain("guide:game"))
+        assert "the goal was pursued" in str(sim.explain("guide:game"))
         assert "rests for another" in str(sim.explain("guide:game"))
 
 

@@ -1,4 +1,4 @@
-"""Whole games in virtual time. In a script, a line with the expected phrases follows the lines of the events."""
+"""Whole games in virtual time. The scripts list events, and the phrases that the agent must say after them."""
 
 from __future__ import annotations
 
@@ -55,9 +55,9 @@ def agent(*others: Any, **settings: Any) -> Simulation:
 def run(sim: Simulation, script: str) -> None:
     """Run a script.
 
-    ``> text``: the user says it. ``wait N``: N seconds pass. ``see NAME``: an activity is recognised. ``typing``: the user types.
-    ``body on``: a body comes into view. ``= names`` checks the names of the phrases that the agent has said since the last
-    check, and ``~ feeling`` checks its latest feeling.
+    ``> text``: the user says this text. ``wait N``: N seconds pass. ``see NAME``: this activity is recognised. ``typing``:
+    the user types. ``body on``: a body comes into view. ``= names`` checks the names of the phrases that the agent has
+    said since the last check, and ``~ feeling`` checks the agent's latest feeling.
     """
     said = len(sim.said)
     for number, raw in enumerate(script.strip().splitlines()):

@@ -107,10 +107,11 @@ PATH = f"/{MODEL.repository}/resolve/{MODEL.revision}/{MODEL.file}"
 
 
 class Hub:
-    """A hub with one model. It redirects to a store of files, and does what `script` says, one entry a request.
+    """A hub with one model. It redirects to a store of files. Each request uses the next entry of `script`.
 
-    An entry is a status, or a status and the seconds to wait. ``("cut", bytes)`` breaks the connection after so many bytes.
-    ``"whole"`` sends the whole file whatever the range. Without an entry the file is sent.
+    An entry is a status to answer with, or a pair of a status and the value of the header ``Retry-After``.
+    ``("cut", n)`` breaks the connection after `n` bytes. ``"whole"`` ignores the requested range and sends the whole
+    file. When no entry is left, the hub sends the requested range.
     """
 
     def __init__(self, content: bytes = CONTENT) -> None:

@@ -58,7 +58,7 @@ def install(name: str = "qwen2.5-0.5b") -> Path:
     return model.path
 
 
-def test_without_a_model_the_agent_listens_and_says_how_to_get_one(machine: Machine) -> None:
+def test_without_a_model_the_listening_skill_is_chosen_and_the_text_says_how_to_get_a_model(machine: Machine) -> None:
     choice = chosen()
     assert choice.settings.backend == "listen"
     assert choice.text.endswith("the agent listens. To talk with a model: ravestate model get")
@@ -66,7 +66,7 @@ def test_without_a_model_the_agent_listens_and_says_how_to_get_one(machine: Mach
     assert chosen().text.endswith("pip install 'ravestate[wildtalk]' , then ravestate model get")
 
 
-def test_a_configured_server_comes_first(machine: Machine) -> None:
+def test_a_server_in_the_settings_comes_first(machine: Machine) -> None:
     machine.servers = [LocalServer("Ollama", HERE, ("llama3.2",))]
     choice = chosen(base_url="https://api.example.com/v1", model="big", api_key="k")
     assert (choice.settings.backend, choice.settings.model) == ("openai", "big")
@@ -75,7 +75,7 @@ def test_a_configured_server_comes_first(machine: Machine) -> None:
     assert "big (https://api.example.com/v1)" in choice.text
 
 
-def test_a_configured_server_without_a_model_is_asked_for_one(machine: Machine) -> None:
+def test_if_the_settings_name_a_server_but_no_model_the_server_lists_its_models(machine: Machine) -> None:
     machine.listed = ("small", "other")
     assert chosen(base_url="http://ada:pw@here/v1", api_key="k").settings.model == "small"
     assert machine.asked == ["http://ada:pw@here/v1 k"]
@@ -84,7 +84,7 @@ def test_a_configured_server_without_a_model_is_asked_for_one(machine: Machine) 
     assert chosen(base_url="http://here/v1").settings.model == "llama3.2"
 
 
-def test_the_default_model_that_the_user_chose_comes_before_a_server(machine: Machine) -> None:
+def test_the_users_default_model_comes_before_a_server_on_this_machine(machine: Machine) -> None:
     machine.servers = [LocalServer("Ollama", HERE, ("llama3.2",))]
     path = install()
     assert chosen().settings.base_url == HERE  # installed, but not the default
@@ -97,7 +97,7 @@ def test_the_default_model_that_the_user_chose_comes_before_a_server(machine: Ma
     assert chosen().settings.base_url == HERE
 
 
-def test_a_server_on_this_machine_comes_before_a_file_and_gets_no_key(machine: Machine) -> None:
+def test_a_server_on_this_machine_comes_before_a_model_file_and_gets_no_key(machine: Machine) -> None:
     machine.servers = [LocalServer("LM Studio", HERE, ("qwen", "llama3.2:latest"))]
     machine.models = [FoundModel(Path("/m/a.gguf"), 10**9, 1)]
     choice = chosen(api_key="k")
@@ -108,7 +108,7 @@ def test_a_server_on_this_machine_comes_before_a_file_and_gets_no_key(machine: M
     assert "folders" not in machine.asked
 
 
-def test_a_file_on_this_machine_comes_last(machine: Machine) -> None:
+def test_a_model_file_on_this_machine_comes_last(machine: Machine) -> None:
     machine.models = [FoundModel(Path("/m/a.gguf"), 1_540_000_000, 1)]
     choice = chosen()
     assert (choice.settings.backend, choice.settings.model_path) == ("gguf", Path("/m/a.gguf"))
@@ -117,7 +117,7 @@ def test_a_file_on_this_machine_comes_last(machine: Machine) -> None:
     assert chosen().settings.backend == "listen"
 
 
-def test_nothing_is_searched_when_the_settings_forbid_it(machine: Machine) -> None:
+def test_with_search_off_no_server_and_no_file_is_searched_for(machine: Machine) -> None:
     machine.servers = [LocalServer("Ollama", HERE, ("llama3.2",))]
     machine.models = [FoundModel(Path("/m/a.gguf"), 10**9, 1)]
     assert chosen(search=False).settings.backend == "listen"
@@ -150,7 +150,7 @@ def test_the_135m_model_is_used_only_by_its_name(machine: Machine) -> None:
 
 
 @pytest.mark.parametrize("backend", ["auto", "gguf"])
-def test_a_missing_model_is_named_with_the_remedy(machine: Machine, backend: str) -> None:
+def test_the_error_about_a_missing_model_names_the_command_that_helps(machine: Machine, backend: str) -> None:
     with pytest.raises(PlatformError, match=r"'qwen3-4b'.* installed: ravestate model get qwen3-4b"):
         chosen(backend=backend, model="qwen3-4b")
     with pytest.raises(PlatformError, match=r"'llama9'.* installed: see: ravestate model list"):

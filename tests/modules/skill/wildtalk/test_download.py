@@ -1,4 +1,4 @@
-"""The download of a model, from a stand-in of the hub: whole, in parts, and every way to go wrong."""
+"""The download of a model from a stand-in for the hub: in one piece, in parts, and with all kinds of errors."""
 
 import errno
 import fcntl
@@ -51,7 +51,7 @@ def test_a_file_is_fetched_from_its_revision_and_verified(hub: Hub) -> None:
 
 
 @pytest.mark.parametrize("terminal", [True, False])
-def test_the_progress_is_shown_on_a_terminal(hub: Hub, monkeypatch: pytest.MonkeyPatch, terminal: bool) -> None:
+def test_the_progress_is_shown_only_on_a_terminal(hub: Hub, monkeypatch: pytest.MonkeyPatch, terminal: bool) -> None:
     screen = io.StringIO()
     monkeypatch.setattr(screen, "isatty", lambda: terminal)
     monkeypatch.setattr("sys.stderr", screen)
@@ -59,7 +59,7 @@ def test_the_progress_is_shown_on_a_terminal(hub: Hub, monkeypatch: pytest.Monke
     assert ("Fetching tiny" in screen.getvalue(), "100%" in screen.getvalue()) == (terminal, terminal)
 
 
-def test_a_broken_connection_is_continued_where_it_broke(hub: Hub) -> None:
+def test_a_download_continues_where_the_connection_broke(hub: Hub) -> None:
     hub.script = [("cut", 100_000), ("cut", 50_000)]
     fetch()
     assert ranges(hub) == ["", "bytes=100000-", "bytes=150000-"]
@@ -85,19 +85,19 @@ def test_an_interrupted_download_keeps_the_finished_part_and_is_continued_later(
     assert ranges(hub) == ["", "bytes=200000-"]
 
 
-def test_a_hub_without_ranges_sends_everything_again(hub: Hub) -> None:
+def test_if_the_hub_ignores_the_range_the_download_begins_again(hub: Hub) -> None:
     hub.script = [("cut", 1000), "whole"]
     fetch()
 
 
-def test_a_part_that_is_complete_is_only_verified(hub: Hub) -> None:
+def test_a_complete_part_is_only_verified(hub: Hub) -> None:
     MODEL.part.parent.mkdir()
     MODEL.part.write_bytes(CONTENT)
     fetch()
     assert hub.requests == []
 
 
-def test_a_part_that_is_too_long_is_fetched_anew(hub: Hub) -> None:
+def test_a_part_that_is_too_long_is_fetched_again(hub: Hub) -> None:
     MODEL.part.parent.mkdir()
     MODEL.part.write_bytes(CONTENT + b"more")
     fetch()
@@ -114,7 +114,7 @@ def test_a_file_with_another_checksum_is_removed(hub: Hub, content: bytes) -> No
     assert not MODEL.path.exists() and not MODEL.part.exists()
 
 
-def test_a_busy_hub_is_asked_again(hub: Hub) -> None:
+def test_a_request_that_a_busy_hub_refuses_is_repeated(hub: Hub) -> None:
     hub.script = [429, 408]
     fetch()
     assert len(ranges(hub)) == 3
@@ -146,7 +146,9 @@ def test_without_a_network_the_message_says_what_to_do(hub: Hub, monkeypatch: py
 
 
 @pytest.mark.parametrize("address", ["http://here:port", "here", "ftp://here"])
-def test_an_endpoint_that_is_no_web_address_is_named(hub: Hub, monkeypatch: pytest.MonkeyPatch, address: str) -> None:
+def test_an_endpoint_that_is_not_a_web_address_is_reported(
+    hub: Hub, monkeypatch: pytest.MonkeyPatch, address: str
+) -> None:
     monkeypatch.setenv("HF_ENDPOINT", address)
     with pytest.raises(PlatformError, match="HF_ENDPOINT is not a web address"):
         fetch()
@@ -167,7 +169,7 @@ def test_offline_mode_forbids_a_download(hub: Hub, monkeypatch: pytest.MonkeyPat
     assert hub.requests == []
 
 
-def test_a_disk_without_room_is_noticed_before_the_first_byte(hub: Hub, monkeypatch: pytest.MonkeyPatch) -> None:
+def test_a_full_disk_is_reported_before_the_first_byte(hub: Hub, monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr(shutil, "disk_usage", lambda _: SimpleNamespace(free=1000))
     with pytest.raises(PlatformError, match=r"tiny needs \d+ MB at .*, where 0 MB are free"):
         fetch()
@@ -175,7 +177,7 @@ def test_a_disk_without_room_is_noticed_before_the_first_byte(hub: Hub, monkeypa
 
 
 @pytest.mark.parametrize(("code", "message"), [(errno.ENOSPC, "the disk is full"), (errno.EROFS, "cannot be written")])
-def test_a_disk_that_fails_on_the_way_keeps_the_part(
+def test_a_disk_error_during_the_download_keeps_the_part(
     hub: Hub, monkeypatch: pytest.MonkeyPatch, code: int, message: str
 ) -> None:
     def fail(url: str, part: Any, **_: Any) -> None:
@@ -190,18 +192,18 @@ def test_a_disk_that_fails_on_the_way_keeps_the_part(
     assert ranges(hub) == ["bytes=1000-"]
 
 
-def test_a_second_process_is_refused(hub: Hub) -> None:
+def test_two_processes_cannot_fetch_the_same_model_at_the_same_time(hub: Hub) -> None:
 
     def locked(*_: Any) -> None:
         raise BlockingIOError
 
     with pytest.MonkeyPatch.context() as patch:
         patch.setattr(fcntl, "lockf", locked)
-        with pytest.raises(PlatformError, match="another process fetches tiny"):
+        with pytest.raises(PlatformError, match="another process is fetching tiny"):
             fetch()
 
 
-def test_a_token_goes_to_the_hub_alone_and_never_to_the_log(
+def test_the_token_goes_only_to_the_hub_and_never_to_the_log(
     hub: Hub, monkeypatch: pytest.MonkeyPatch, caplog: pytest.LogCaptureFixture
 ) -> None:
     caplog.set_level(logging.DEBUG)
@@ -215,7 +217,7 @@ def test_a_token_goes_to_the_hub_alone_and_never_to_the_log(
     assert "s3cret" not in caplog.text + str(failure.value)
 
 
-def test_a_token_does_not_go_to_an_unencrypted_mirror(hub: Hub, monkeypatch: pytest.MonkeyPatch) -> None:
+def test_the_token_does_not_go_to_an_unencrypted_mirror(hub: Hub, monkeypatch: pytest.MonkeyPatch) -> None:
     seen: list[dict[str, str]] = []
     monkeypatch.setenv("HF_TOKEN", "hf_s3cret")
     monkeypatch.setattr(file_download, "http_get", lambda *_, headers, **__: seen.append(headers))
@@ -226,7 +228,9 @@ def test_a_token_does_not_go_to_an_unencrypted_mirror(hub: Hub, monkeypatch: pyt
     assert ["Authorization" in headers for headers in seen] == [False, True]
 
 
-def test_without_the_library_the_message_says_what_to_type(hub: Hub, monkeypatch: pytest.MonkeyPatch) -> None:
+def test_without_huggingface_hub_the_message_names_the_command_that_installs_it(
+    hub: Hub, monkeypatch: pytest.MonkeyPatch
+) -> None:
     monkeypatch.setitem(__import__("sys").modules, "huggingface_hub", None)
     with pytest.raises(PlatformError, match=r"pip install 'ravestate\[wildtalk\]'"):
         fetch()

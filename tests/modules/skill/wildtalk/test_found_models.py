@@ -43,7 +43,7 @@ def test_a_search_stops_at_the_limit_in_an_endless_folder(tmp_path: Path, monkey
     assert len(find_models([tmp_path])) < 5
 
 
-def test_the_best_is_the_largest_that_talks_fluently_and_fits() -> None:
+def test_the_best_model_is_the_largest_fluent_model_that_fits_into_memory() -> None:
     models = [model(0.5, 0.4), model(4, 2.5), model(8, 5), model(70, 40)]
     assert best_model(models, 16 * B) == models[1]
     assert best_model(models, 3 * B) == models[0]
@@ -53,7 +53,7 @@ def test_the_best_is_the_largest_that_talks_fluently_and_fits() -> None:
     assert best_model([model(0.5, 0)]) is not None  # by this machine's memory
 
 
-def test_the_folders_are_those_of_the_environment(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+def test_environment_variables_name_the_model_folders(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr("sys.platform", "linux")
     monkeypatch.setenv("HOME", "/ada")
     for name in ("XDG_DATA_HOME", "XDG_CACHE_HOME", "HF_HOME", "HF_HUB_CACHE", "LLAMA_CACHE"):
@@ -77,7 +77,7 @@ def test_the_folders_are_those_of_the_environment(tmp_path: Path, monkeypatch: p
     assert Path("/hub") in folders()
 
 
-def test_a_user_without_a_home_has_no_folders(monkeypatch: pytest.MonkeyPatch) -> None:
+def test_a_user_without_a_home_folder_has_no_model_folders(monkeypatch: pytest.MonkeyPatch) -> None:
     def homeless() -> Path:
         raise RuntimeError("Could not determine home directory.")
 

@@ -89,7 +89,7 @@ def test_while_an_answer_grows_only_its_whole_sentences_are_admitted() -> None:
     assert checked.admit("A new house! How exciting.", last=True) == ("A new house! How exciting.", False)
 
 
-def test_no_sentence_after_a_refused_one_is_admitted() -> None:
+def test_after_a_refused_sentence_no_further_sentence_is_admitted() -> None:
     checked = gate()
     assert checked.admit("A new house! See www.example.org. ", last=True) == ("A new house!", True)
     assert checked.reason == "a link"

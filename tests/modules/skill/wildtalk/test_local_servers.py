@@ -1,4 +1,4 @@
-"""Servers on this machine: told apart from other web servers, and asked for their chat models."""
+"""Model servers on this machine are distinguished from other web servers, and list their chat models."""
 
 import asyncio
 import json
@@ -52,7 +52,7 @@ def test_a_server_is_found_with_the_chat_models_that_it_has() -> None:
     assert server.base_url.startswith("http://127.0.0.1:") and server.base_url.endswith("/v1")
 
 
-def test_the_number_of_parameters_that_llama_cpp_states_counts() -> None:
+def test_a_number_of_parameters_that_the_server_states_decides_whether_a_model_is_listed() -> None:
     entry = {"id": "model.gguf", "object": "model", "meta": {"n_params": 134_515_008}}
     assert found(answering({"object": "list", "data": [entry]})) == []
     entry["meta"] = {"n_params": 1_543_714_304}
@@ -77,12 +77,12 @@ def test_a_server_that_refuses_the_request_is_left_out(status: int) -> None:
     assert found(answering(listing("llama3.2"), status)) == []
 
 
-def test_several_servers_are_asked_at_once_and_listed_in_the_given_order() -> None:
+def test_servers_are_asked_at_the_same_time_and_listed_in_the_given_order() -> None:
     meeting = threading.Barrier(2, timeout=10)
 
     class Waiting(Quiet):
         def do_GET(self) -> None:
-            meeting.wait()  # each waits for the request to the other
+            meeting.wait()  # each server answers only when both have a request
             self.reply(json.dumps(listing("llama3.2")).encode())
 
     with serving(Waiting) as first, serving(Waiting) as second:
@@ -112,7 +112,7 @@ def test_no_server_is_found_if_nothing_listens_or_the_web_client_is_missing(monk
     assert found(answering(listing("llama3.2"))) == []
 
 
-def test_a_configured_server_gets_its_key_and_the_log_does_not(caplog: pytest.LogCaptureFixture) -> None:
+def test_the_key_goes_to_the_server_and_not_to_the_log(caplog: pytest.LogCaptureFixture) -> None:
     caplog.set_level(logging.DEBUG)
     seen: list[str | None] = []
 

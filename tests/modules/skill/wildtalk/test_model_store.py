@@ -15,7 +15,7 @@ def own_folder(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr(model_store, "folder", lambda: tmp_path)
 
 
-def test_the_catalogue_states_everything_that_a_download_needs() -> None:
+def test_the_catalogue_has_everything_that_a_download_needs() -> None:
     assert 4 <= len(catalogue()) <= 6
     assert RECOMMENDED in catalogue()
     sizes = [model.parameters for model in catalogue().values()]
@@ -35,7 +35,7 @@ def test_an_unknown_name_gets_a_suggestion() -> None:
     assert named("Qwen2.5-1.5B") is catalogue()["qwen2.5-1.5b"]
 
 
-def test_a_default_holds_while_its_file_is_there(tmp_path: Path) -> None:
+def test_a_default_model_counts_only_while_its_file_exists(tmp_path: Path) -> None:
     model = named(RECOMMENDED)
     assert default() is None
     set_default(model.name)

@@ -1,4 +1,4 @@
-"""Calls that come while the backend is being chosen wait for it."""
+"""Calls of a backend wait until the backend has been chosen."""
 
 import asyncio
 
@@ -33,7 +33,7 @@ def test_calls_wait_for_the_chosen_backend() -> None:
     asyncio.run(main())
 
 
-def test_without_a_backend_they_fail_with_the_reason() -> None:
+def test_if_no_backend_is_found_the_waiting_calls_raise_the_reason() -> None:
     async def main() -> None:
         pending, other = PendingBackend(), PendingBackend()
         pending.resolve(None, PlatformError("no such file"))

@@ -1,4 +1,4 @@
-"""The progress bar: for people only, and only when it takes long."""
+"""The progress bar appears only on a terminal, and only if the work takes long."""
 
 import io
 import sys
@@ -13,7 +13,7 @@ class Terminal(io.StringIO):
         return True
 
 
-def test_a_bar_is_drawn_on_a_terminal_and_removed() -> None:
+def test_a_bar_is_drawn_on_a_terminal_and_removed_at_the_end() -> None:
     screen = Terminal()
     with ProgressBar("Loading", delay=0.0, stream=screen) as bar:
         for percent in range(0, 101, 10):
@@ -38,7 +38,7 @@ def test_quick_work_needs_no_bar() -> None:
     assert screen.getvalue() == ""
 
 
-def test_above_a_prompt_it_is_one_line(monkeypatch: pytest.MonkeyPatch) -> None:
+def test_above_a_prompt_the_bar_is_one_line_of_text(monkeypatch: pytest.MonkeyPatch) -> None:
     screen = Terminal()
     monkeypatch.setattr(sys, "stderr", screen)
     with ProgressBar("Loading", delay=0.0) as bar:
@@ -55,7 +55,7 @@ def test_above_a_prompt_a_finished_bar_is_not_shown(monkeypatch: pytest.MonkeyPa
     assert screen.getvalue() == ""
 
 
-def test_without_tqdm_or_standard_error_it_is_silent(monkeypatch: pytest.MonkeyPatch) -> None:
+def test_without_tqdm_or_standard_error_nothing_is_drawn(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setitem(sys.modules, "tqdm", None)
     screen = Terminal()
     ProgressBar("Loading", delay=0.0, stream=screen)(0.5)

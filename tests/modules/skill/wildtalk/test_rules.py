@@ -88,7 +88,7 @@ def talk(model: Model, **settings: Any) -> Simulation:
     return sim
 
 
-def test_it_answers_and_the_answer_shows_as_it_grows() -> None:
+def test_the_module_answers_and_emits_the_pieces_of_the_answer() -> None:
     model = Model("Ravestate: Hel", "lo", "! How", " are you?")
     sim = talk(model)
     sim.say("Hello!")
@@ -103,7 +103,7 @@ def test_it_answers_and_the_answer_shows_as_it_grows() -> None:
     assert model.log == ["load", "end", "close"]
 
 
-def test_the_model_is_told_who_it_is_and_what_was_said() -> None:
+def test_the_prompt_has_the_persona_the_examples_and_the_conversation() -> None:
     model = Model("Fine.")
     sim = talk(model, persona="Be {name}.", name="Rosie", examples=(("Q", "A"),), max_tokens=5, temperature=0.1)
     for text in ("One", "Two"):
@@ -120,7 +120,7 @@ def test_the_model_is_told_who_it_is_and_what_was_said() -> None:
     assert model.options[0]["seed"] != model.options[1]["seed"]
 
 
-def test_a_new_utterance_interrupts_it() -> None:
+def test_a_new_utterance_interrupts_the_answer() -> None:
     model = Model("Once", " upon", " a", " time")
     sim = talk(model)
     sim.say("Tell me something.")
@@ -170,7 +170,7 @@ def test_the_history_keeps_the_part_of_a_spoken_answer_that_was_heard(heard: str
     sim.__exit__(None, None, None)
 
 
-def test_it_stops_the_model_after_its_sentences() -> None:
+def test_the_model_is_stopped_after_the_maximum_number_of_sentences() -> None:
     model = Model("One. ", "Two. ", "Three. ", "Four.")
     sim = talk(model, sentences=1)
     sim.say("Hello!")
@@ -183,7 +183,7 @@ def test_it_stops_the_model_after_its_sentences() -> None:
 @pytest.mark.parametrize(
     ("pieces", "text"), [((), "Hello!"), (("...",), "Hello!"), (("User: hi",), "Hello!"), (("Hi",), " ")]
 )
-def test_without_an_answer_it_resigns(pieces: tuple[str, ...], text: str) -> None:
+def test_if_the_model_writes_no_words_the_rule_resigns(pieces: tuple[str, ...], text: str) -> None:
     sim = talk(Model(*pieces))
     sim.say(text)
     sim.advance(5.0)
@@ -207,7 +207,7 @@ def test_the_model_is_not_asked_to_answer_an_empty_text(text: str) -> None:
     sim.__exit__(None, None, None)
 
 
-def test_the_beginning_of_a_long_utterance_is_told_once() -> None:
+def test_the_prompt_has_the_beginning_of_a_very_long_utterance_only_once() -> None:
     model = Model("Fine.")
     sim = talk(model)
     sim.say("Hear me: " + "x" * 100_000)
@@ -259,7 +259,7 @@ def test_a_model_that_cannot_be_used_is_logged_once_at_the_start(
     assert not sim.failures
 
 
-def test_without_a_model_the_agent_listens() -> None:
+def test_without_a_model_the_listening_skill_is_chosen() -> None:
     with simulate(wildtalk) as sim:
         assert isinstance(sim.read(wildtalk.model), ListeningBackend)
         sim.say("I bought a bike.")
@@ -281,7 +281,7 @@ class Choosing:
         return choose(settings)
 
 
-def test_words_that_are_said_during_the_choice_are_answered_after_it(monkeypatch: pytest.MonkeyPatch) -> None:
+def test_words_of_the_user_during_the_choice_of_a_model_are_answered_after_it(monkeypatch: pytest.MonkeyPatch) -> None:
     async def main() -> str:
         choosing = Choosing(monkeypatch)
         async with rs.Context(wildtalk) as context:
@@ -325,7 +325,7 @@ def test_the_model_answers_questions_of_fact_only_if_the_settings_allow_it() -> 
     sim.__exit__(None, None, None)
 
 
-def test_the_agent_ends_at_once_while_its_model_is_still_loading() -> None:
+def test_the_agent_ends_without_delay_while_its_model_is_still_loading() -> None:
     ended: list[float] = []
 
     class Loading(Model):
@@ -350,7 +350,7 @@ def test_the_agent_ends_at_once_while_its_model_is_still_loading() -> None:
     assert ended == [10.0]
 
 
-def test_without_a_model_others_may_answer() -> None:
+def test_if_the_model_slot_is_none_the_rule_resigns() -> None:
     with simulate(wildtalk) as sim:
         sim.put(wildtalk.model, None)
         sim.say("Hello!")
@@ -358,7 +358,7 @@ def test_without_a_model_others_may_answer() -> None:
     assert not sim.failures
 
 
-def test_the_history_is_bounded() -> None:
+def test_the_history_has_a_maximum_number_and_length_of_messages() -> None:
     sim = talk(Model())
     for number in range(KEPT + 5):
         sim.put(rawio.output, f"{number} " + "x" * 100_000)
@@ -369,7 +369,7 @@ def test_the_history_is_bounded() -> None:
     assert len(messages[0].text) == 20_000
 
 
-def test_nothing_that_is_said_at_once_is_forgotten() -> None:
+def test_the_history_keeps_all_utterances_of_one_instant() -> None:
     sim = talk(Model())
     for text in ("One", "Two", "Three"):
         sim.context.put(rawio.input, text)
@@ -407,8 +407,8 @@ def test_the_api_key_does_not_appear_in_a_repr() -> None:
 
 
 @pytest.mark.model
-def test_with_the_real_model_a_piece_shows_before_the_whole() -> None:
-    # Without the gate: it refuses the small model's words sometimes. The listening skill then answers in one piece.
+def test_the_real_model_emits_a_piece_before_the_whole_answer() -> None:
+    # The gate is off, because it sometimes refuses the small model's words. The answer would then have only one piece.
     settings = {"wildtalk": {"model": "smollm2-135m", "gate": False}}
 
     async def main() -> None:

@@ -96,14 +96,14 @@ def test_slow_checks_do_not_block_the_event_loop(sim: Simulation, monkeypatch: p
     assert not any(blocks for _, blocks in checked)
 
 
-def test_it_answers_once_although_two_clauses_wait_for_the_input(sim: Simulation) -> None:
+def test_each_utterance_gets_one_answer_although_two_clauses_wait_for_it(sim: Simulation) -> None:
     for text in ("hello", "hello", "I bought a hat"):
         sim.say(text)
         sim.advance(1.0)
     assert len(sim.said) == 3
 
 
-def test_a_move_in_a_game_is_not_answered_by_other_modules(sim: Simulation) -> None:
+def test_other_modules_do_not_answer_a_turn_in_a_game(sim: Simulation) -> None:
     sim.say("word chain")
     word = sim.said[0].rstrip(".").split()[-1]
     assert not sim.read(wildtalk.listening).game.used[1:]
@@ -114,13 +114,13 @@ def test_a_move_in_a_game_is_not_answered_by_other_modules(sim: Simulation) -> N
     assert sim.read(wildtalk.listening).game.used[:2] == ("bow", "weather")
 
 
-def test_a_long_remark_during_a_game_reaches_other_modules(sim: Simulation) -> None:
+def test_other_modules_answer_a_long_remark_during_a_game(sim: Simulation) -> None:
     sim.say("tell me a riddle")
     sim.say("by the way, I would rather hear what the weather is going to be like tomorrow")
     assert sim.said[-1].startswith("Sunny")
 
 
-def test_a_yes_to_another_modules_question_is_no_answer_to_its_own(sim: Simulation) -> None:
+def test_a_yes_to_another_modules_question_is_left_to_that_module(sim: Simulation) -> None:
     sim.say("my mother is ill")
     sim.say("how is the weather")
     sim.say("yes")
@@ -134,14 +134,14 @@ def test_a_clear_follow_up_comes_before_other_modules(sim: Simulation) -> None:
     assert sim.said[-1] != sim.said[-2]
 
 
-def test_the_tone_follows_utterances_that_other_modules_answer(sim: Simulation) -> None:
+def test_utterances_that_other_modules_answer_also_set_the_tone(sim: Simulation) -> None:
     sim.say("the weather is awful, my grandfather died yesterday")
     sim.say("he had a white beard")
     assert sim.read(wildtalk.listening).tone == "sad"
     assert sim.read(wildtalk.listening).being.text == "your grandfather"
 
 
-def test_the_agent_performs_also_where_a_model_is_set(sim: Simulation) -> None:
+def test_the_listening_skill_tells_jokes_even_if_a_model_makes_the_small_talk(sim: Simulation) -> None:
     model = Scripted()
     sim.put(wildtalk.model, model)
     sim.say("tell me a joke")
@@ -181,7 +181,7 @@ def test_a_bad_sentence_after_a_good_one_is_left_out(sim: Simulation) -> None:
     assert sim.said == ["I am sorry to hear that."]
 
 
-def test_claims_against_what_is_known_are_refused(sim: Simulation) -> None:
+def test_a_claim_that_contradicts_a_known_fact_is_refused(sim: Simulation) -> None:
     sim.put(wildtalk.model, Scripted("You live in Berlin."))
     sim.say("guess where my home is these days")
     assert "Berlin" not in sim.said[0]
@@ -197,7 +197,7 @@ def test_the_prompt_contains_the_known_facts_about_the_user(sim: Simulation) -> 
     assert "It is " in system
 
 
-def test_forgetting_the_user_wipes_the_talk(sim: Simulation) -> None:
+def test_forgetting_the_user_deletes_the_conversation(sim: Simulation) -> None:
     sim.say("my mother is ill")
     sim.advance(1.0)
     sim.emit(interloc.forgotten)

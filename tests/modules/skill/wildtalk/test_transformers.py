@@ -1,4 +1,4 @@
-"""A tiny causal model with random weights. The library, its format and its client of the hub are real."""
+"""Small talk by a tiny causal model with random weights. The library transformers and its client of the hub are real."""
 
 from __future__ import annotations
 
@@ -52,7 +52,7 @@ async def answer(backend: TransformersBackend, **options: Any) -> list[str]:
         return [piece async for piece in pieces]
 
 
-def test_the_answer_comes_in_pieces_and_the_same_seed_gives_it_again(tiny: Path) -> None:
+def test_the_answer_comes_in_pieces_and_the_same_seed_gives_the_same_answer(tiny: Path) -> None:
     async def story() -> tuple[list[str], list[str], list[str]]:
         backend = TransformersBackend(str(tiny))
         return await answer(backend), await answer(backend), await answer(backend, seed=2)
@@ -62,7 +62,7 @@ def test_the_answer_comes_in_pieces_and_the_same_seed_gives_it_again(tiny: Path)
     assert "\n" not in "".join(first).strip()
 
 
-def test_a_model_with_a_chat_template_is_given_the_turns_in_it(tiny: Path, tmp_path: Path) -> None:
+def test_a_model_with_a_chat_template_gets_the_turns_in_this_template(tiny: Path, tmp_path: Path) -> None:
     folder = tmp_path / "chatty"
     folder.mkdir()
     for part in tiny.iterdir():
@@ -93,7 +93,7 @@ def test_a_chat_template_that_refuses_the_conversation_is_reported(tiny: Path, t
         asyncio.run(answer(TransformersBackend(str(folder))))
 
 
-def test_contexts_share_a_model_until_the_last_lets_go_of_it(tiny: Path) -> None:
+def test_contexts_share_a_model_until_the_last_context_closes_it(tiny: Path) -> None:
     async def story() -> None:
         one, other = TransformersBackend(str(tiny)), TransformersBackend(str(tiny))
         done: list[float] = []
@@ -113,7 +113,7 @@ def test_contexts_share_a_model_until_the_last_lets_go_of_it(tiny: Path) -> None
     assert str(tiny) not in file._Model._loaded
 
 
-def test_a_conversation_longer_than_the_model_remembers_is_cut_at_its_beginning(tiny: Path) -> None:
+def test_a_conversation_longer_than_the_models_context_loses_its_beginning(tiny: Path) -> None:
     long = [Message("user", "word " * 4000)]
 
     async def story() -> str:
@@ -123,7 +123,7 @@ def test_a_conversation_longer_than_the_model_remembers_is_cut_at_its_beginning(
     assert len(asyncio.run(story())) <= 16
 
 
-def test_an_answer_is_no_longer_than_the_model_can_remember(tiny: Path) -> None:
+def test_an_answer_is_no_longer_than_the_models_context(tiny: Path) -> None:
     async def story() -> list[str]:
         return await answer(TransformersBackend(str(tiny)), max_tokens=100_000, temperature=2.0)
 
@@ -137,7 +137,7 @@ def test_closing_an_answer_stops_the_model(tiny: Path) -> None:
         with contextlib.suppress(StopAsyncIteration):
             await anext(pieces)
         await pieces.aclose()
-        return await answer(backend)  # the first answer no longer holds the model
+        return await answer(backend)  # this would wait if the first answer still used the model
 
     asyncio.run(story())
     for thread in threading.enumerate():
@@ -146,7 +146,7 @@ def test_closing_an_answer_stops_the_model(tiny: Path) -> None:
             assert not thread.is_alive()
 
 
-def test_the_agent_ends_while_a_model_is_still_being_fetched(monkeypatch: pytest.MonkeyPatch) -> None:
+def test_a_download_of_a_model_does_not_delay_the_end_of_the_agent(monkeypatch: pytest.MonkeyPatch) -> None:
     fetched = threading.Event()
 
     async def story() -> None:
@@ -167,12 +167,12 @@ def test_the_agent_ends_while_a_model_is_still_being_fetched(monkeypatch: pytest
 
 
 @pytest.mark.parametrize("name", ["/no/such/folder", "no such name"])
-def test_a_model_that_cannot_be_loaded_is_named_with_the_remedy(name: str) -> None:
+def test_the_error_names_a_model_that_cannot_be_loaded_and_the_remedy(name: str) -> None:
     with pytest.raises(PlatformError, match=r"cannot be loaded.*--set wildtalk\.model=gpt2"):
         asyncio.run(TransformersBackend(name).load())
 
 
-def test_a_broken_model_is_named(tiny: Path, tmp_path: Path) -> None:
+def test_the_error_names_a_broken_model(tiny: Path, tmp_path: Path) -> None:
     for part in tiny.iterdir():
         (tmp_path / part.name).write_bytes(part.read_bytes())
     (tmp_path / "model.safetensors").write_bytes(b"nonsense")
@@ -180,7 +180,7 @@ def test_a_broken_model_is_named(tiny: Path, tmp_path: Path) -> None:
         asyncio.run(TransformersBackend(str(tmp_path)).load())
 
 
-def test_packages_that_are_missing_are_named(monkeypatch: pytest.MonkeyPatch) -> None:
+def test_the_error_names_the_missing_packages(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr(file, "find_spec", lambda _: None)
     with pytest.raises(PlatformError, match=r"needs torch and transformers.*ravestate\[transformers\]"):
         asyncio.run(TransformersBackend("gpt2").load())
@@ -265,7 +265,7 @@ def test_a_model_is_fetched_from_a_hub_once(tiny: Path, tmp_path: Path, monkeypa
     def load() -> None:
         asyncio.run(TransformersBackend("someone/tiny").load())
         for thread in threading.enumerate():
-            if thread.name == file.LOADER:  # the thread may still be ending, and hold the model
+            if thread.name == file.LOADER:  # the thread may still hold the model until it ends
                 thread.join()
 
     monkeypatch.setattr(constants, "HF_HUB_CACHE", str(tmp_path))  # the library reads the environment only once

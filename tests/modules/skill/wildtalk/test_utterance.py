@@ -1,4 +1,4 @@
-"""From the output of a model to the words of an agent."""
+"""`Utterance` turns the output of a model into the words of an agent."""
 
 import pytest
 from hypothesis import given
@@ -45,12 +45,12 @@ def said(*pieces: str, name: str = "Rosie", sentences: int = 2) -> str:
         ("Fine ❤️👨‍👩‍👧!", "Fine !"),
     ],
 )
-def test_the_output_of_a_model_is_cleaned_to_the_words_to_say(written: str, expected: str) -> None:
+def test_the_words_to_say_are_the_cleaned_output_of_the_model(written: str, expected: str) -> None:
     assert said(written) == expected
     assert said(*written) == expected
 
 
-def test_the_first_words_are_said_at_once() -> None:
+def test_the_first_words_are_returned_immediately() -> None:
     assert Utterance("Rosie").feed("Hello") == "Hello"
 
 
@@ -81,7 +81,7 @@ def test_only_text_with_words_or_emoji_is_worth_saying(written: str, worth: bool
     assert utterance.worth_saying() is worth
 
 
-def test_without_sentences_there_is_nothing_to_say() -> None:
+def test_a_maximum_of_zero_sentences_is_refused() -> None:
     with pytest.raises(ValueError, match="at least 1, not 0"):
         Utterance("Rosie", sentences=0)
 

@@ -57,7 +57,7 @@ def why_broken(path: Path, said: str, files: Iterable[Path]) -> str:
     """Return the message for users about a damaged memory; it names all files of the memory."""
     first = (said.splitlines() or [""])[0][:200]
     return (
-        f"memory {path} is damaged, or is not a memory file ({first}): replace it by a backup copy, or remove "
+        f"memory {path} is damaged, or is not a memory file ({first}): replace it with a backup copy, or remove "
         f"{', '.join(file.name for file in files)} with ravestate memory reset --path {path}"
     )
 

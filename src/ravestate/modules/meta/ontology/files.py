@@ -56,7 +56,7 @@ class MemoryFiles:
             return 0
 
     def can_write(self) -> bool:
-        """Return whether the disk has room for a file that is 1 MB longer than the log."""
+        """Return whether a file as long as the log can grow by 1 MB."""
         try:
             with self.probe.open("wb") as file:
                 file.truncate(self.log_size())

@@ -206,8 +206,8 @@ class Graph:
     def forget(self, node: Node, /) -> list[Node]:
         """Remove a node, its relations, and the nodes that only this node needs. The file keeps none of their bytes.
 
-        A node needs the targets of its relations, and in turn their targets. A target stays if a node that stays is
-        related to it. A person or robot also stays if memory knows more about them than their name.
+        A node needs the targets of its relations, and in turn their targets. A target is not removed if a remaining node
+        has a relation to it. A person or robot also stays if memory knows more about them than their name.
 
         Returns:
             The removed nodes, `node` first; an empty list if memory does not have `node`.

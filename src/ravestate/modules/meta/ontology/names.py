@@ -50,4 +50,4 @@ class Settings(rs.Settings):
 module = rs.Module("ontology", settings=Settings)
 
 memory: rs.Slot[Memory | None] = module.slot("memory", None, input=True)
-"""The open memory. None before ``rs.startup``, and if memory cannot be opened."""
+"""The agent's memory. The slot is None before ``rs.startup``, and if memory cannot be opened."""

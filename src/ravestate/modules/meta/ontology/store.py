@@ -60,9 +60,9 @@ class Store(Protocol):
         ...
 
     def note_bytes(self) -> None:
-        """Note, in the same transaction, that deleted nodes leave bytes behind: `rest` or `close` removes them.
+        """Note, in the same transaction, that deleted nodes leave bytes behind, so that `rest` or `close` removes them.
 
-        If the process ends before that, `rest` removes them after the next opening.
+        If the process ends earlier, `rest` removes the bytes after the next opening.
         """
         ...
 

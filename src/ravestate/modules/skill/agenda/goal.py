@@ -60,22 +60,22 @@ def goal(
 ) -> Goal:
     """Declare a goal of the agent.
 
-    The agent says the words of the goal when it is bored, unless it has just pursued another goal. The goal is over
-    when `done` or `refused` happens, or after the last try. The user has priority: their words interrupt the pursuit of
-    a goal.
+    The agent *pursues* the goal: it says the goal's words when it is bored, unless it has just pursued another goal. The
+    goal is over when `done` or `refused` happens, or after the last try. The user's words interrupt the pursuit.
 
-    The goal is a rule, ``module:name``, so ``sim.explain("module:name")`` explains it.
+    The goal is a rule, ``module:name``. So ``sim.explain("module:name")`` says why the goal was pursued or not.
 
     Args:
         module: The goal's module; it must require `agenda`.
         name: The goal's name within the module.
         say: The agent's words: a text; several texts, one for each try in turn; or a function of the rule context that
             returns a text. The function may be async, and slow.
-        intent: An intent for the verbaliser, instead of `say`.
+        intent: The name of an intent of `verbaliser`, instead of `say`.
         reads: The slots that the function `say` reads.
         when: A further condition for a pursuit, e.g. ``interloc.users.holds(bool)``.
         unless: A condition that prevents a pursuit. It may contain only ``slot.holds(...)``.
-        priority: A factor on the utility of the goal's rule (law L9); the goal with the greatest utility goes first.
+        priority: The weight of the goal's rule, which multiplies its utility. The goal with the greatest utility goes
+            first.
         cooldown: Seconds from one try to the next; also the seconds that the user has for an answer.
         done: The event that makes the goal a success, at any time: a signal, a condition, or a regular expression of
             whole words for the user's answer. If it is None, the first try makes the goal a success.
@@ -84,7 +84,7 @@ def goal(
 
     Raises:
         rs.DeclarationError: `say` and `intent` are both given or both missing, a number is impossible, or an expression
-            is faulty.
+            is invalid.
 
     Example:
         >>> import ravestate as rs
@@ -123,7 +123,7 @@ def goal(
         when=condition | goals.changed.where(is_over).detached(),
         reads=reads,
         writes=(rawio.output, goals) if intent is None else (verbaliser.intent, rawio.output, goals),
-        weight=priority,  # the rule resigns during its rest, because a `cooldown` would only let other rules go first
+        weight=priority,  # no `cooldown=` here: during a rule's cool-down, other rules only go first; this rule resigns
         until=rawio.input.changed | goals.changed.where(is_over),  # the goal may be reached while `say()` runs
         detached=True,  # a new causal group begins, so that rules can react to the user's answer
         name=name,
@@ -131,22 +131,24 @@ def goal(
     async def pursue(ctx: rs.RuleContext) -> rs.Resign | rs.Retire | None:
         state = ctx[goals].get(whole, OPEN)
         if state.is_over:
-            return rs.Retire(f"it is {state.status}")
+            return rs.Retire(f"the goal is {state.status}")
         past = ctx.now - state.since
         if state.tries and (past < cooldown or state.tries >= tries):
-            return rs.Resign(f"it was pursued {past:.0f} s ago, and rests for another {max(cooldown - past, 0):.0f} s")
+            return rs.Resign(
+                f"the goal was pursued {past:.0f} s ago, and rests for another {max(cooldown - past, 0):.0f} s"
+            )
         words = await _worded(ctx, texts, state.tries) if intent is None else ""
         over = done is None
         ctx[goals].add(whole, GoalState("done" if over else "pursued", state.tries + 1, ctx.now))
         ctx[said] = words if intent is None else intent
-        return rs.Retire("it is said") if over else None
+        return rs.Retire("the goal's words were said") if over else None
 
     def end(ctx: rs.RuleContext, status: Status, *, by_words: bool) -> rs.Resign | None:
         state = ctx[goals].get(whole, OPEN)
         if state.is_over:
-            return rs.Resign(f"it is {state.status} already")
+            return rs.Resign(f"the goal is already {state.status}")
         if by_words and not (state.status == "pursued" and ctx.now - state.since <= cooldown):
-            return rs.Resign("it was not pursued lately: the words were meant for something else")
+            return rs.Resign("the goal was not pursued lately, so the words do not answer it")
         ctx[goals].add(whole, GoalState(status, state.tries, state.since))
         return None
 

@@ -1,4 +1,4 @@
-"""Charades: the user acts something out, and the agent guesses; then the agent sets a riddle of its own."""
+"""Charades: the user acts something out, and the agent guesses. Then the agent sets a riddle."""
 
 from __future__ import annotations
 

@@ -326,7 +326,7 @@ ANYWHERE: Mapping[str, Transition] = {
     "silence": _lapse,
     "repeat": _repeat,
 }
-"""A move that is possible in any step → the transition."""
+"""A move that is possible in every step of a game → the transition."""
 
 
 def moves_of(step: Step) -> frozenset[str]:

@@ -47,7 +47,7 @@ FEELINGS: dict[Feeling, rs.Signal[None]] = {
 PRIORITY = 40.0
 """The weight of the answers in a game, which outrank all other answers, such as agentqa's answer to "stop"."""
 JUST = 0.1
-"""The end of the agent's speech counts as the end of its last word if it is at most this many seconds ago."""
+"""If the agent's speech ended at most this many seconds ago, this was the end of the countdown's last word."""
 SPEAKING = 6.0
 """The longest time (seconds) that the agent waits for its last word to sound."""
 
@@ -97,7 +97,7 @@ offer = agenda.goal(
     detached=True,
 )
 async def note_offer(ctx: rs.RuleContext) -> None:
-    """Wait for the answer to an offer that was made out of boredom."""
+    """Wait for the answer, after the bored agent has offered a game."""
     turn = ctx[game].turn + 1
     ctx[game] = Game("offered", turn=turn)
     ctx[agenda.topics].add(TOPIC, "a game of charades")
@@ -109,7 +109,7 @@ async def note_offer(ctx: rs.RuleContext) -> None:
 
 @module.rule(when=nlp.analysis.changed, reads=(game, activity.known), writes=strayed, emits=(moved, invited, abandoned))
 async def listen(ctx: rs.RuleContext) -> rs.Resign | None:
-    """Emit the user's move, if the words make one. Leave words about something else to the other skills."""
+    """Emit the user's move, if the words are a move. Leave words about something else to the other skills."""
     seen = ctx.payload(nlp.analysis.changed)
     now = ctx[game]
     if seen is None:
@@ -148,7 +148,7 @@ async def answer(ctx: rs.RuleContext) -> None:
     weight=2.5,  # this rule outranks small talk about boredom
 )
 async def propose(ctx: rs.RuleContext) -> None:
-    """Offer the game to a user who wants to play, or is bored. If they name a game, a skill for it goes first."""
+    """Offer charades to a user who wants to play, or is bored. If the user names a game, a skill for that game goes first."""
     carry_out(ctx, play(ctx[game], ctx.payload(invited), world_of(ctx)))
 
 
@@ -197,7 +197,7 @@ def world_of(ctx: rs.RuleContext) -> World:
     detached=True,
 )
 async def count_down(ctx: rs.RuleContext) -> None:
-    """Count to three. If the user hears the agent's words by voice, wait for the end of the last one."""
+    """Count down from three. If the agent speaks by voice, wait for the end of the last word."""
     settings: Settings = ctx.settings
     ctx[sightings] = ()
     heard = ctx[rawio.heard].strip()

@@ -1,4 +1,4 @@
-"""Understand the user's words as moves in the game, by acts and answers that `nlp` finds, and by the game's examples."""
+"""Understand the user's words as moves in the game, by the acts and answers that `nlp` finds, and by examples.yaml."""
 
 from __future__ import annotations
 
@@ -27,7 +27,7 @@ ANY_GAME = word_set("game round")
 SURE = 2
 """The strength of a sure yes or no; *I think so* is weaker."""
 SURE_NAME = 0.65
-"""The least confidence that the user means a known activity. Otherwise, the recogniser would learn a wrong movement."""
+"""The minimum confidence that the user means a known activity. Below it, the recogniser could learn a wrong movement."""
 FRAMES = ("{}", "it was {}", "I was {}", "is it {}", "are you {}", "you are {}", "no it was {}")
 """Sentences in which the user names an activity."""
 
@@ -145,14 +145,14 @@ def _own_words(seen: Analysis) -> str:
 
 @cache
 def examples() -> Matcher:
-    """Return the classifier of the user's words during the game. It might not be loaded yet."""
+    """Return the classifier of the user's words during the game, loaded or not."""
     found = read_examples(files(__name__.rpartition(".")[0]) / "examples.yaml")
     return Matcher(found.classes, found.none)
 
 
 @cache
 def names() -> Matcher:
-    """Return the classifier of the names of activities. It might not be loaded yet."""
+    """Return the classifier of the names of activities, loaded or not."""
     found = {riddle.name: [f.format(w) for w in riddle.words for f in FRAMES] for riddle in RIDDLES.values()}
     return Matcher(found, NO_NAMES, least=SURE_NAME)
 
@@ -169,7 +169,7 @@ NO_NAMES = tuple(
     )
     for frame in FRAMES[:4]
 )  # fmt: skip
-"""Sentences with activities that the agent does not know. In `names`, they are the examples of no class."""
+"""Sentences about activities that the agent does not know. For the classifier `names`, they belong to no class."""
 
 
 def load() -> None:

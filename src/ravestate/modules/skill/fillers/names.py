@@ -31,7 +31,7 @@ promised = module.flag("promised")
 """Whether the agent still owes an answer after a filler."""
 
 late = module.signal("late")
-"""An answer after a filler takes too long; it may still come."""
+"""The answer after a filler takes too long. It may still come."""
 
 lost = module.signal("lost")
 """The agent still owes an answer after a filler, but no rule is left that could answer."""

@@ -38,7 +38,7 @@ def _silent(speaking: bool) -> bool:
 
 
 @module.rule(
-    when=idle.impatient.max_age(0.0) & rawio.speaking.holds(_silent),  # `max_age`: later, the answer may have come
+    when=idle.impatient.max_age(0.0) & rawio.speaking.holds(_silent),  # not later: the answer may have come by then
     reads=(filled, waiting),
     writes=(verbaliser.intent, filled, promised),
 )
@@ -71,11 +71,11 @@ async def notice_answer(ctx: rs.RuleContext) -> rs.Resign | None:
     """Note that the answer has come or has begun, or that the user says something else."""
     said = ctx.payload(rawio.output.changed)
     if said is not None and said in (ctx[verbaliser.last].get("filler"), ctx[verbaliser.last].get("late")):
-        return rs.Resign("this is the filler")
+        return rs.Resign("this is a filler, or the notice of a delay")
     if said is not None and not said.strip():
-        return rs.Resign("nobody hears an empty answer")
+        return rs.Resign("an empty text is not an answer")
     if said is not None and ctx.payload(rawio.input.changed) not in (None, ctx[rawio.input]):
-        return rs.Resign("this answers what the user said before")
+        return rs.Resign("this answers earlier words of the user")
     ctx[promised] = False
     ctx[waiting] = said is None and bool((ctx.payload(rawio.input.changed) or "").strip())
     return None

@@ -307,7 +307,7 @@ def _is_plain(question: Question, text: str) -> bool:
     ranked = any(word.endswith("est") or word == "most" for group in question.needs for word in group)
     if ranked and not _WORLD.search(asked):
         return _WORLD.search(text) is not None
-    first = re.escape(question.words[0]) if question.words else ""
+    first = re.escape(question.words[0]) if question.words and question.kind is QuestionWord.OBJECT else ""
     return bool(first) and re.match(rf"(?:an? |the )?{first} (?!about\b)", text, re.IGNORECASE) is not None
 
 

@@ -18,7 +18,7 @@ from .names import goodbye, greeted, hello, module, parted
 JUST_NOW = 60.0
 """For this many seconds after a greeting or a goodbye, the agent does not repeat it."""
 GENERAL = 0.15
-"""The weight of the answers: so low that almost any other rule for the same words outranks them."""
+"""The weight of the answers. It is so low that almost any other rule that can answer outranks them."""
 
 
 @module.rule(
@@ -39,7 +39,7 @@ async def bid_farewell(ctx: rs.RuleContext) -> rs.Resign | None:
     """Say goodbye to a user who leaves."""
     said = ctx[parted]
     if said is not None and ctx.now - said < JUST_NOW:
-        return rs.Resign("goodbye has been said")
+        return rs.Resign("the agent has just said goodbye")
     name = ctx.payload(interloc.users.removed).item
     ctx[verbaliser.intent] = Intent("farewell", {"name": name}, __package__)
     return None
@@ -83,6 +83,6 @@ def _partings() -> Matcher:
 
 
 def _goes_to_bed(text: str) -> bool:
-    if bundled_matcher("acts").loaded:  # else, only words that equal an example are recognised
+    if bundled_matcher("acts").loaded:  # if not, only words that equal an example are recognised
         _partings().load()
     return any(_partings().match_all(heard(text)))

@@ -28,7 +28,7 @@ class Choice:
 
 
 def choose(settings: Settings) -> Choice:
-    """Return the backend to use. The call blocks for up to a second, and loads no model.
+    """Return the backend to use. The call may block for a few seconds while it asks servers. It loads no model.
 
     ``auto`` takes the first of these: a server or model in the settings; the default of ``ravestate model get``; a
     server on this machine; a model file in the user's folders; the listening skill.

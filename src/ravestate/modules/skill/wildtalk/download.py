@@ -31,8 +31,8 @@ def download(model: CatalogueModel) -> None:
     ``HF_ENDPOINT`` may give the address of another hub, and ``HF_TOKEN`` a token.
 
     Raises:
-        PlatformError: The hub, the network or the disk refuses, or the file differs from the catalogue's. The message
-            says how to mend that.
+        PlatformError: The hub, the network or the disk fails, or the file differs from the catalogue's checksum. The
+            message names the remedy.
     """
     if os.environ.get("HF_HUB_OFFLINE", "").upper() in ("1", "ON", "YES", "TRUE"):
         raise PlatformError("HF_HUB_OFFLINE forbids downloads: unset it, and repeat the command")
@@ -61,7 +61,7 @@ def _alone(model: CatalogueModel) -> Generator[BinaryIO]:
         except ImportError:  # Windows has no such lock
             pass
         except BlockingIOError:
-            raise PlatformError(f"another process fetches {model.name} just now") from None
+            raise PlatformError(f"another process is fetching {model.name}: wait until it has finished") from None
         try:
             yield part
         finally:

@@ -12,7 +12,7 @@ from .gguf_header import read_header
 from .model_store import folder
 
 LEAST = 450_000_000
-"""The minimum number of parameters. The names of such models round it up to half a billion."""
+"""The minimum number of parameters. The names of such models say "0.5B"."""
 
 FLUENT = 4_500_000_000
 """The maximum number of parameters of a model that answers fluently without a graphics card."""
@@ -24,7 +24,7 @@ MANY = 50_000
 """The maximum number of files and folders that a search looks at."""
 
 NOT_CHAT = ("embed", "rerank", "mmproj", "draft", "-vocab", "-of-0")
-"""Parts of file names that mark other kinds of models, and models in several files."""
+"""Parts of file names that mark other kinds of models, and models that are split into several files."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -38,7 +38,7 @@ class FoundModel:
 
 
 def folders() -> list[Path]:
-    """Return the model folders of this user, Ravestate's own first. They may not exist."""
+    """Return the paths of this user's model folders, Ravestate's own first. Some may not exist."""
     try:
         own, home = folder(), Path.home()
     except RuntimeError:  # the user has no home

@@ -25,9 +25,9 @@ the cross-encoder scores below UNRELATED.
 Calibrated on small talk: all of 25 fitting answers pass, and 9 of 10 misplaced answers are refused.
 """
 SURE = 0.85
-"""The least confidence with which a sentence counts as out of character."""
+"""The minimum confidence at which a sentence counts as out of character."""
 TELLING = 3
-"""The minimum number of words in an utterance before an answer is compared with it."""
+"""Sentences with fewer words than this are too short to compare."""
 
 _FORMS = {
     "a link": re.compile(r"https?:|\bwww\.|\w\.(?:com|org|net|io|edu|gov)\b|\S@\S"),
@@ -65,8 +65,8 @@ class Gate:
             heard: The utterance to be answered.
             said: The agent's last answers, which it must not repeat.
             before: The last utterances of the user and the agent. An answer may refer to them as well.
-            known: Facts about the user by topic.
-            pipeline: The parser of claims about the user.
+            known: Facts about the user, by topic.
+            pipeline: The parser that finds claims about the user. Without a parser, claims are not checked.
         """
         self._name = name
         self._heard = heard

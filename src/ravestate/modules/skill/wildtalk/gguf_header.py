@@ -23,7 +23,7 @@ _NUMBERS: dict[int, str] = dict(zip((0, 1, 2, 3, 4, 5, 6, 7, 10, 11, 12), "BbHhI
 
 @dataclass(frozen=True, slots=True)
 class GgufHeader:
-    """The facts that a header tells about its model."""
+    """Facts about a model, from the header of its file."""
 
     architecture: str
     parameters: int
@@ -36,7 +36,7 @@ def read_header(path: Path) -> GgufHeader:
 
     Raises:
         OSError: The file cannot be read.
-        ValueError: It is not a complete GGUF file.
+        ValueError: The file is not a complete GGUF file.
     """
     status = path.stat()
     return _read(path, status.st_size, status.st_mtime_ns)
@@ -60,7 +60,7 @@ class _Reader:
         self._at = 0
 
     def header(self) -> tuple[GgufHeader, int]:
-        """Return the header, and the place of the last tensor."""
+        """Return the header, and the offset of the last tensor, in bytes."""
         magic, version, tensors, keys = self._numbers("4sIQQ")
         if magic != b"GGUF" or version not in (2, 3) or not tensors:
             raise ValueError

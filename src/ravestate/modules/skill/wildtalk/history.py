@@ -110,6 +110,6 @@ class History:
         return (Message("system", system), *shown, *kept)
 
     def _clean(self, text: str) -> str:
-        # A user may paste a book: drop at once all that goes far beyond the maximum length.
+        # A user may paste a book, so drop most of an overlong text before the slow steps.
         text = text[: max(1000, 4 * self._characters)]
         return " ".join(_MARKERS.sub(" ", printable(text)).split())

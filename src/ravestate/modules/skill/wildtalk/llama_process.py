@@ -25,7 +25,7 @@ from ravestate.errors import PlatformError
 
 @dataclass(frozen=True, slots=True)
 class ModelKey:
-    """The file and its options; users with the same key share a process."""
+    """The file and its options; contexts with the same key share a process."""
 
     path: Path
     context_tokens: int
@@ -40,7 +40,7 @@ class LlamaProcess:
         """Take the key. The process is not started yet."""
         self.key = key
         self.users = 0
-        self.secret = secrets.token_urlsafe(24)  # keeps out users who can reach the port on this machine
+        self.secret = secrets.token_urlsafe(24)  # keeps out other users of this machine, who can reach the port
         self._address = ""
         self._starting = threading.Lock()
         self._process: subprocess.Popen[str] | None = None
@@ -149,7 +149,7 @@ class LlamaProcess:
             raise PlatformError("wildtalk: the model was closed while it was loading")
 
     def _reason(self) -> str:
-        """Return llama.cpp's reason for a failure: its first line about an error, which is the most exact line."""
+        """Return llama.cpp's reason for a failure: its first line about an error, which is the most precise."""
         if self._errors is None:
             return ""
         self._errors.seek(0)

@@ -76,7 +76,7 @@ async def _ask(port: int, name: str) -> LocalServer:
     address = f"http://127.0.0.1:{port}/v1"
     try:
         async with asyncio.timeout(PATIENCE):
-            # If no server listens on the port, this ends at once, without the import of httpx2.
+            # If no server listens on the port, this fails immediately, before httpx2 is imported.
             _, writer = await asyncio.open_connection("127.0.0.1", port)
             writer.close()
             return LocalServer(name, address, await chat_models(address))

@@ -11,7 +11,7 @@ from ravestate.folders import user_folder
 from ravestate.yaml_text import load_yaml
 
 RECOMMENDED = "qwen2.5-1.5b"
-"""The model that ``ravestate model get`` fetches if no name is given."""
+"""The model that ``ravestate model get`` fetches if the user names none."""
 
 
 @dataclass(frozen=True, slots=True)

@@ -89,7 +89,7 @@ chosen: rs.Signal[object] = module.signal("chosen", payload=object)
 """A backend was chosen, by the settings or by what this machine has. The payload is the backend, or None."""
 
 trouble: rs.Slot[str] = module.slot("trouble", "")
-"""The reason why the model does not answer; empty while the model answers. Each reason is logged once."""
+"""The reason why the model does not answer; empty while the model answers."""
 
 listening: rs.Slot[State] = module.slot("listening", State(), type=State)
 """The memory of the listening skill: the last phrases, the tone, opinions, a game."""

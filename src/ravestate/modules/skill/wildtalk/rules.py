@@ -73,7 +73,7 @@ async def choose_model(ctx: rs.RuleContext) -> None:
 
 @module.rule(when=chosen.max_age(None).detached(), writes=model)
 async def use(ctx: rs.RuleContext) -> rs.Resign | None:
-    """Replace the stand-in by the chosen backend, unless the designer has put another backend into the slot."""
+    """Replace the stand-in with the chosen backend, unless the designer has put another backend into the slot."""
     if not isinstance(ctx[model], PendingBackend):
         return rs.Resign("there is another backend already")
     ctx[model] = cast("Backend | None", ctx.payload(chosen))
@@ -245,14 +245,14 @@ async def chat(ctx: rs.RuleContext) -> rs.Resign | None:
     when=nlp.analysis.changed & listening.holds(is_open),
     reads=(interloc.users, overheard, history),
     writes=(rawio.output, listening),
-    weight=8.0,  # this rule outranks modules that would mistake a move in a game for a question
+    weight=8.0,  # this rule outranks modules that would mistake a turn in a game for a question
 )
 async def go_on(ctx: rs.RuleContext) -> rs.Resign | None:
     """Continue a game, or react to the user's answer to a question of the listening skill."""
     seen = ctx.payload(nlp.analysis.changed)
     said = "" if seen is None else await follow_up(ctx, heard_in(ctx, seen.text, seen))
     if not said:
-        return rs.Resign("it is neither a move in a game nor a short answer")
+        return rs.Resign("the utterance is neither a turn in a game nor a reply to the agent's last answer")
     ctx[rawio.output] = said
     return None
 
@@ -266,7 +266,7 @@ async def go_on(ctx: rs.RuleContext) -> rs.Resign | None:
     weight=4.0,  # this rule outranks modules that only note a fact in the same words: "I am Ann, my dog has died"
 )
 async def comfort(ctx: rs.RuleContext) -> rs.Resign | None:
-    """Console a sad user, perform, mend the talk, or answer well-known words, before any rule answers a fact in them."""
+    """Answer sorrow, a request for a performance, a correction, or known words before a rule notes a fact in them."""
     seen = ctx.payload(nlp.analysis.changed)
     if seen is None:
         return rs.Resign("nothing was analysed")
@@ -291,16 +291,17 @@ async def forget(ctx: rs.RuleContext) -> None:
 
 
 def tell(ctx: rs.RuleContext, error: PlatformError) -> None:
-    """Log the model's fault, once."""
+    """Log the model's fault, unless the last fault was the same."""
     if ctx[trouble] != str(error):
         ctx.log.error("%s", error)
         ctx[trouble] = str(error)
 
 
 def remember(ctx: rs.RuleContext, role: Role, text: str) -> None:
-    """Add a message to the history, and drop the oldest.
+    """Add a message to the history, and drop the oldest messages beyond `KEPT`.
 
-    Each message has a key of its own, so that no message is lost when several come at once (L13).
+    Each message has its own key, so that none is lost when several rules add messages at the same time (law L13 in
+    docs/explanation/processing-model.md).
     """
     items = ctx[history]
     items.add(f"{ctx.now:.6f}/{ctx.random.getrandbits(32):08x}", Message(role, text[:LONGEST]))

@@ -36,7 +36,7 @@ _TONES = {
     "angry": "The user is angry. Stay calm, and take them seriously.",
     "tired": "The user is tired. Be brief.",
 }
-"""Advice for the model, by the tone of the talk."""
+"""Advice for the model, by the tone of the conversation."""
 
 
 _making = threading.Lock()
@@ -71,24 +71,24 @@ def heard_in(ctx: rs.RuleContext, text: str, seen: nlp.Analysis | None) -> Heard
 
 
 def needs_comfort(seen: nlp.Analysis | None) -> bool:
-    """Return whether the user is in sorrow: both the feeling and the likely move say so."""
+    """Return whether the user is in sorrow: the tone is sad, and the agent's likely move is to console or to mourn."""
     if seen is None or seen.question is not None or seen.move is None or is_crisis(seen.normal.text):
         return False  # a module with explicit answers to distress comes first
     return listener().overhear(seen, None).tone == "sad" and bool(SORROWFUL & {seen.move.name, seen.move.second})
 
 
 def may_claim(seen: nlp.Analysis | None) -> bool:
-    """Return whether the utterance may be a move in the talk, such as a request for a joke. `claims` looks closer."""
+    """Guess quickly whether `claims` will return true, without the state of the conversation."""
     return seen is not None and listener().claims(Heard(seen.text, seen))
 
 
 def claims(heard: Heard, state: State) -> bool:
-    """Return whether the utterance is a move in the talk: it asks for a performance, repairs the talk, or tells news."""
+    """Return whether small talk must answer: the user asks for a performance, corrects the agent, or tells news."""
     return listener().claims(heard, state)
 
 
 def may_be_known(seen: nlp.Analysis | None) -> bool:
-    """Return whether the listening skill may have a reply to these words or almost the same. `is_known` looks closer.
+    """Guess quickly whether the listening skill has a reply to this or a very similar utterance. `is_known` checks it.
 
     Other skills answer hello and goodbye. A short *yes* or *no* belongs to the module that asked.
     """
@@ -100,7 +100,7 @@ def may_be_known(seen: nlp.Analysis | None) -> bool:
 
 
 async def is_known(seen: nlp.Analysis) -> bool:
-    """Return whether the listening skill has a reply to these words or almost the same. Takes some 50 ms, in a thread."""
+    """Return whether the listening skill has a reply to this or a very similar utterance. Takes 50 ms, in a thread."""
     return may_be_known(seen) and await asyncio.to_thread(listener().knows, seen)
 
 
@@ -113,7 +113,7 @@ async def listen(ctx: rs.RuleContext, heard: Heard) -> str:
 
 
 def _answer(heard: Heard, state: State, chance: random.Random) -> Answer:
-    """Return the listener's answer. If the user says their name beside something else, the answer is to both."""
+    """Return the listener's answer. If users say their name and something else, answer both."""
     told = None if heard.seen is None else heard.seen.introduction
     closing = None if heard.seen is None else heard.seen.closing
     if told is None and closing is not None and (closing.remarks or closing.returned):
@@ -130,7 +130,7 @@ def _answer(heard: Heard, state: State, chance: random.Random) -> Answer:
 
 
 def is_open(state: State) -> bool:
-    """Return whether the skill waits for the user's turn in a game, or for an answer, or for a follow-up."""
+    """Return whether the skill expects something: a turn in a game, an answer to its question, or a follow-up."""
     if state.game is not None or state.pending is not None:
         return True
     return bool(state.moment or state.thread) and listener().expects(state)  # `expects` reads the phrases first

@@ -1,4 +1,4 @@
-"""A talk with the listening skill alone."""
+"""A conversation with the listening skill alone."""
 
 from __future__ import annotations
 
@@ -17,7 +17,7 @@ from ravestate.modules.skill.wildtalk.listening.material import Material, materi
 
 
 class Talk:
-    """A user, the skill, and the state between them."""
+    """A conversation of a user with the skill, with its state."""
 
     def __init__(self, seed: int = 0) -> None:
         self.listener = Listener()
@@ -54,7 +54,7 @@ def _models() -> None:
 
 @pytest.fixture
 def begin() -> Callable[[int], Talk]:
-    """Begin a talk with a seed."""
+    """Return a function that begins a conversation with a seed."""
     return Talk
 
 

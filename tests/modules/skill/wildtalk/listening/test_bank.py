@@ -37,7 +37,7 @@ def test_no_utterance_is_listed_twice() -> None:
     assert not [text for text, times in said.items() if times > 1]
 
 
-def test_similar_words_find_the_entry(talk: Any) -> None:
+def test_the_bank_finds_an_entry_by_similar_words(talk: Any) -> None:
     bank = material().bank
     bank.load()
     said = "my dads number is still saved in my phone"
@@ -46,7 +46,7 @@ def test_similar_words_find_the_entry(talk: Any) -> None:
     assert talk.say(said) in [line.text for line in best.moment.groups["say"]]
 
 
-def test_until_the_model_is_loaded_only_equal_words_are_found() -> None:
+def test_before_the_model_is_loaded_the_bank_finds_only_equal_words() -> None:
     bank = Bank([("own.tsv:1", "-\tthe kettle sings | it boils\tThen tea.")])
     assert [found.moment.name for found in bank.similar(["The kettle sings!"], "The kettle sings!")] == ["own.tsv:1"]
     assert bank.similar(["the kettle is singing"], "the kettle is singing") == []
@@ -64,18 +64,18 @@ def test_until_the_model_is_loaded_only_equal_words_are_found() -> None:
         "> >\ta\tb",
     ],
 )
-def test_a_broken_row_is_refused_with_its_place(row: str) -> None:
+def test_the_error_about_an_invalid_line_names_the_file_and_the_line(row: str) -> None:
     with pytest.raises(DeclarationError, match=r"own\.tsv:7"):
         Bank([("own.tsv:7", row)])
 
 
 @pytest.mark.parametrize(("file", "row"), [("own.tsv", ">>\ta\tb"), ("other.tsv", ">\ta\tb")])
-def test_a_follow_up_without_its_entry_is_refused_with_its_place(file: str, row: str) -> None:
+def test_the_error_about_a_follow_up_without_an_entry_names_the_file_and_the_line(file: str, row: str) -> None:
     with pytest.raises(DeclarationError, match=rf"{file}:7"):
         Bank([("own.tsv:6", "-\ta\tb"), (f"{file}:7", row)])
 
 
-def test_follow_ups_stand_below_the_nearest_line_with_one_mark_less() -> None:
+def test_a_follow_up_belongs_to_the_nearest_earlier_line_with_one_mark_fewer() -> None:
     rows = ["sad\ta\tA.", ">\tb | c\tB.", ">>\td\tD.", ">\t*\tE.", "-\tf\tF."]
     first, second = Bank([(f"own.tsv:{number}", row) for number, row in enumerate(rows)]).moments
     assert [one.examples for one in first.follows] == [("b", "c"), ("*",)]

@@ -29,14 +29,14 @@ def told(text: str) -> Told | None:
         ("forty tin soldiers in a box", "forty tin soldiers in a box", "piece", "now"),
     ],
 )
-def test_a_statement_is_turned(text: str, echo: str, subject: str, tense: str) -> None:
+def test_a_statement_is_repeated_from_the_agents_view(text: str, echo: str, subject: str, tense: str) -> None:
     found = told(text)
     assert found is not None
     assert (found.echo, found.subject, found.tense) == (echo, subject, tense)
 
 
 @pytest.mark.parametrize("text", ["hello", "yes", "Go away!", "what is this?", "I told you so", "hm"])
-def test_words_that_tell_nothing_or_address_the_agent_are_not_repeated(text: str) -> None:
+def test_words_without_a_statement_and_words_to_the_agent_are_not_repeated(text: str) -> None:
     found = told(text)
     assert found is None or not found.echo
 
@@ -44,7 +44,7 @@ def test_words_that_tell_nothing_or_address_the_agent_are_not_repeated(text: str
 @pytest.mark.parametrize(
     "text", [f"I have {' and '.join(f'box {word}' for word in 'abcdefghijkl')} at home", "you can get stamps there"]
 )
-def test_a_long_statement_and_anybodys_you_are_not_repeated(text: str) -> None:
+def test_a_long_statement_and_a_statement_about_people_in_general_are_not_repeated(text: str) -> None:
     found = told(text)
     assert found is not None
     assert not found.echo

@@ -1,4 +1,4 @@
-"""Follow-ups: what the user says directly after a reply of the bank."""
+"""Follow-ups: replies to the user's utterance directly after a reply of the bank."""
 
 from __future__ import annotations
 
@@ -38,7 +38,7 @@ sad\tmy duck drowned\tThat duck was lucky in you.
 
 @pytest.fixture(scope="module")
 def bank() -> Bank:
-    """A bank with follow-ups."""
+    """A bank of three entries about a goat, a fence and a duck, with follow-ups."""
     found = Bank([(f"own.tsv:{number}", row) for number, row in enumerate(ROWS.splitlines(), 1) if row])
     found.load()
     return found
@@ -46,7 +46,7 @@ def bank() -> Bank:
 
 @pytest.fixture
 def own(bank: Bank, begin: Callable[[int], Talk], monkeypatch: pytest.MonkeyPatch) -> Callable[[int], Talk]:
-    """Begin a talk with that bank alone."""
+    """Return a function that begins a conversation with only that bank."""
 
     def begun(seed: int = 0) -> Talk:
         talk = begin(seed)
@@ -69,36 +69,36 @@ def own(bank: Bank, begin: Callable[[int], Talk], monkeypatch: pytest.MonkeyPatc
         ("red tiles", "The goat certainly has its reasons."),
     ],
 )
-def test_a_follow_up_answers_what_is_said_after_its_entry(text: str, reply: str, own: Callable[..., Talk]) -> None:
+def test_after_an_entry_its_most_similar_follow_up_answers(text: str, reply: str, own: Callable[..., Talk]) -> None:
     talk = own()
     assert talk.say("the goat is on the roof") == "Which roof is it?"
     assert talk.say(text) == reply
 
 
-def test_a_longer_statement_about_something_else_ends_the_thread(own: Callable[..., Talk]) -> None:
+def test_a_long_statement_about_another_subject_gets_no_follow_up(own: Callable[..., Talk]) -> None:
     talk = own()
     talk.say("the goat is on the roof")
     assert talk.say("my cousin plays chess with a dentist every friday") != "The goat certainly has its reasons."
 
 
-def test_a_different_unit_of_time_gets_a_different_answer(own: Callable[..., Talk]) -> None:
+def test_an_answer_in_days_gets_the_follow_up_for_days_and_not_for_minutes(own: Callable[..., Talk]) -> None:
     talk = own()
     assert [talk.say("the goat had a birthday"), talk.say("about ten days")][-1] == "Then it climbs on everything."
 
 
-def test_follow_ups_may_be_nested_to_three_levels(own: Callable[..., Talk]) -> None:
+def test_follow_ups_can_have_follow_ups_up_to_three_levels_deep(own: Callable[..., Talk]) -> None:
     talk = own()
     said = [talk.say(text) for text in ("the goat is on the roof", "the shed", "it doesn't hold", "I have no ladder")]
     assert said[2:] == ["Then fetch the ladder at once.", "A table and a chair reach as high."]
 
 
-def test_a_follow_up_of_an_earlier_entry_can_still_be_found(own: Callable[..., Talk]) -> None:
+def test_a_follow_up_of_the_entry_before_the_last_reply_can_still_answer(own: Callable[..., Talk]) -> None:
     talk = own()
     said = [talk.say(text) for text in ("the goat is on the roof", "the shed", "what shall i do now")]
     assert said[-1] == "Shake a bucket of oats."
 
 
-def test_follow_ups_are_not_found_in_the_open_bank(bank: Bank, own: Callable[..., Talk]) -> None:
+def test_a_search_of_the_bank_finds_no_follow_ups(bank: Bank, own: Callable[..., Talk]) -> None:
     assert own().say("the henhouse") != "The henhouse roof holds a goat."
     names = {found.moment.name for found in bank.similar(["the henhouse"], "the henhouse")}
     assert names <= {one.name for one in bank.moments}
@@ -123,7 +123,7 @@ def test_the_follow_up_for_any_other_statement_does_not_answer_sorrows_questions
     assert unsaid not in talk.say(text)
 
 
-def test_a_follow_up_that_was_said_lately_is_not_said_again(own: Callable[..., Talk]) -> None:
+def test_the_reply_of_a_follow_up_is_not_repeated_soon(own: Callable[..., Talk]) -> None:
     talk = own()
     talk.say("the goat is on the roof")
     state = talk.state
@@ -138,7 +138,7 @@ def test_a_follow_up_has_the_tone_of_its_entry(own: Callable[..., Talk]) -> None
     assert talk.state.tone == "sad"
 
 
-def test_only_a_clear_follow_up_continues_the_thread(own: Callable[..., Talk]) -> None:
+def test_only_a_clear_follow_up_takes_precedence_over_other_modules(own: Callable[..., Talk]) -> None:
     talk = own()
     talk.say("the goat is on the roof")
     texts = ("it's the henhouse", "nope", "red tiles", "Anna", "what is a goat?")
@@ -152,14 +152,14 @@ def test_only_a_clear_follow_up_continues_the_thread(own: Callable[..., Talk]) -
     assert not talk.listener.continues(Heard("it's the henhouse", seen("it's the henhouse")), State())
 
 
-def test_another_answer_in_between_ends_the_yes_and_no_of_an_entry(own: Callable[..., Talk]) -> None:
+def test_after_an_answer_of_another_module_a_yes_gets_no_follow_up(own: Callable[..., Talk]) -> None:
     talk = own()
     talk.say("the goat is on the roof")
     talk.state = replace(talk.state, moment="")  # another module has answered
     assert talk.say("yes") != "So it stands there still."
 
 
-def test_the_same_seed_gives_the_same_talk(begin: Callable[[int], Talk]) -> None:
+def test_the_same_seed_gives_the_same_conversation(begin: Callable[[int], Talk]) -> None:
     texts = ["we got a puppy", "ten weeks old", "no, he cries all night", "my bus was late", "yes, very", "good"]
     assert [begin(3).say(text) for text in texts[:1]] == [begin(3).say(text) for text in texts[:1]]
     first, second = begin(3), begin(3)
@@ -174,12 +174,12 @@ def test_a_built_in_follow_up_continues_the_thread(begin: Callable[[int], Any]) 
     assert talk.state.moment in [one.name for one in before]
 
 
-def test_until_the_model_is_loaded_equal_words_find_a_follow_up() -> None:
+def test_before_the_model_is_loaded_a_follow_up_is_found_by_equal_words() -> None:
     bank = Bank([("own.tsv:1", "-\tthe kettle sings\tThen tea."), ("own.tsv:2", ">\tgreen tea\tA good cup.")])
     assert bank.likeness(["Green tea!"], bank.named["own.tsv:2"]) == [("green tea", 1.0)]
 
 
-def test_the_thread_ends_with_the_talk() -> None:
+def test_the_listener_expects_a_follow_up_only_after_an_entry() -> None:
     listener, chance = Listener(), random.Random(0)
     state = listener.answer(Heard("my bus was late", seen("my bus was late")), State(), chance).state
     assert state.thread and listener.expects(state)

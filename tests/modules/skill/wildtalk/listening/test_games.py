@@ -20,7 +20,7 @@ def test_there_are_enough_jokes_stories_riddles_and_songs() -> None:
     assert len(shows()["told"]["song"]) >= 5
 
 
-def test_no_joke_comes_twice_before_all_were_told(talk: Any) -> None:
+def test_no_joke_is_repeated_before_all_jokes_have_been_told(talk: Any) -> None:
     told = [talk.say("tell me a joke") for _ in shows()["told"]["joke"]]
     assert sorted(told) == sorted(shows()["told"]["joke"])
     assert talk.say("tell me a joke") in shows()["told"]["joke"]
@@ -35,7 +35,7 @@ def asked(text: str) -> Any:
     return next(riddle for riddle in shows()["riddles"] if riddle["ask"] == text)
 
 
-def test_a_riddle_is_guessed(talk: Any) -> None:
+def test_a_right_guess_solves_a_riddle(talk: Any) -> None:
     riddle = asked(talk.say("a riddle please"))
     assert riddle["answers"][0] in talk.say(f"is it a {riddle['answers'][-1]}?")
     assert asked(talk.say("yes"))["ask"] != riddle["ask"]
@@ -101,14 +101,14 @@ def test_stop_ends_every_game(game: str, begin: Callable[[int], Any]) -> None:
     assert talk.state.game is None
 
 
-def test_another_subject_ends_a_game(talk: Any) -> None:
+def test_two_remarks_about_another_subject_end_a_game(talk: Any) -> None:
     talk.say("riddle")
     talk.say("by the way, do you know what my sister told me about her new job yesterday?")
     talk.say("she starts there on the first of the month, and she is rather nervous about it")
     assert talk.state.game is None
 
 
-def test_a_remark_does_not_end_a_game(talk: Any) -> None:
+def test_a_single_remark_does_not_end_a_game(talk: Any) -> None:
     first = talk.say("word chain").rstrip(".").split()[-1]
     talk.say("oh, my sister has just come home from the dentist, she looks relieved")
     letter = "The letter" if talk.state.game is None else talk.state.game.word[-1]
@@ -125,7 +125,7 @@ def test_a_game_explains_its_rules_and_goes_on(game: str, begin: Callable[[int],
     assert talk.state.game == before
 
 
-def test_a_game_that_it_lacks_is_declined_with_those_that_it_has(talk: Any) -> None:
+def test_the_agent_declines_an_unknown_game_and_offers_the_games_that_it_knows(talk: Any) -> None:
     assert "ludo" in talk.say("can we play ludo together?").lower()
     assert "chain" in talk.say("fine, then word chain").lower()
 
@@ -139,7 +139,7 @@ def test_a_game_that_it_lacks_is_declined_with_those_that_it_has(talk: Any) -> N
         (("my niece would like to hear a story about a whale",), "whale"),
     ],
 )
-def test_it_performs_about_the_subject(texts: tuple[str, ...], word: str, talk: Any) -> None:
+def test_a_joke_or_story_is_about_the_subject_that_the_user_names(texts: tuple[str, ...], word: str, talk: Any) -> None:
     answers = [talk.say(text) for text in texts]
     kind = "joke" if "joke" in texts[0] else "story"
     names = (word, *shows()["subjects"].get(word, ()))
@@ -147,17 +147,17 @@ def test_it_performs_about_the_subject(texts: tuple[str, ...], word: str, talk: 
     assert any(name in answers[-1].lower() for name in names)
 
 
-def test_play_offers_a_choice(talk: Any) -> None:
+def test_a_request_to_play_a_game_gets_a_choice_of_games(talk: Any) -> None:
     assert talk.say("let us play a game") in shows()["play"]["start"]
     assert "chain" in talk.say("the word game").lower()
 
 
-def test_without_a_story_about_the_subject_it_announces_another_story(talk: Any) -> None:
+def test_the_agent_says_that_it_has_no_story_about_the_subject_and_tells_another(talk: Any) -> None:
     assert "a unicorn" in talk.say("can you tell me a story with a unicorn").split(".")[0]
     assert talk.say("and then?") in [line.text for line in material().plain["after_show"].groups["say"]]
 
 
-def test_a_story_about_something_known_is_told(talk: Any) -> None:
+def test_the_agent_tells_a_story_about_a_snail(talk: Any) -> None:
     assert "snail" in talk.say("tell me a story about a snail").split(".")[0].lower()
 
 
@@ -174,11 +174,11 @@ def test_a_farewell_during_a_game_is_answered_as_a_farewell(talk: Any) -> None:
         "give me a riddle",
     ],
 )
-def test_a_riddle_that_was_asked_for_comes_at_once(text: str, talk: Any) -> None:
+def test_a_request_for_a_riddle_beside_other_words_gets_a_riddle(text: str, talk: Any) -> None:
     assert asked(talk.say(text))
 
 
-def test_a_long_right_answer_to_a_riddle_counts(talk: Any) -> None:
+def test_a_long_utterance_can_solve_a_riddle(talk: Any) -> None:
     riddle = asked(talk.say("a riddle please"))
     assert riddle["answers"][0] in talk.say(f"oh that must be a {riddle['answers'][0]}, ha, one point for me")
 
@@ -188,7 +188,7 @@ def test_after_the_request_one_more_another_riddle_follows(talk: Any) -> None:
     assert asked(talk.say("hm, one more"))["ask"] != first["ask"]
 
 
-def test_it_thinks_of_an_animal_and_answers_with_yes_and_no(talk: Any) -> None:
+def test_the_agent_thinks_of_an_animal_and_answers_questions_about_it(talk: Any) -> None:
     assert talk.say("no, you think of an animal and I guess it") in shows()["holder"]["start"]
     animal = talk.state.game.word
     has_fur = "fur" in shows()["animal"]["known"][animal]
@@ -196,6 +196,6 @@ def test_it_thinks_of_an_animal_and_answers_with_yes_and_no(talk: Any) -> None:
     assert animal in talk.say(f"then it is {animal}")
 
 
-def test_it_guesses_the_animal_that_the_user_thinks_of(talk: Any) -> None:
+def test_the_agent_guesses_the_animal_that_the_user_thinks_of(talk: Any) -> None:
     talk.say("now I think of an animal and you have to find it")
     assert talk.state.game.kind == "animal"

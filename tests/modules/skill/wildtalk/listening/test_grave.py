@@ -40,7 +40,9 @@ GRAVE = [
 
 
 @pytest.mark.parametrize("remark", GRAVE)
-def test_a_grave_remark_after_light_talk_gets_no_light_follow_up(remark: str, begin: Callable[[int], Talk]) -> None:
+def test_a_grave_remark_in_a_light_conversation_gets_no_light_follow_up(
+    remark: str, begin: Callable[[int], Talk]
+) -> None:
     bank = material().bank
     for seed, light in enumerate(LIGHT):
         talk = begin(seed)
@@ -50,13 +52,13 @@ def test_a_grave_remark_after_light_talk_gets_no_light_follow_up(remark: str, be
         assert entry is None or entry.tone in DARK, (light, remark, talk.state.said[-1])
 
 
-def test_idle_words_are_not_grave() -> None:
+def test_harmless_words_are_not_grave() -> None:
     assert not [
         text for text in (*LIGHT, "i live in a small town", "it makes me laugh", "never mind") if is_grave(text)
     ]
 
 
-def test_after_words_of_danger_yes_and_no_lead_to_help() -> None:
+def test_after_words_of_danger_the_reply_to_yes_or_no_names_help() -> None:
     for danger in (
         "i think about ending my life",
         "i took too many pills",
@@ -70,7 +72,7 @@ def test_after_words_of_danger_yes_and_no_lead_to_help() -> None:
             assert "call" in reply or "ring" in reply, (danger, answer, reply)
 
 
-def test_words_of_danger_are_left_to_the_module_with_explicit_answers(begin: Callable[[int], Talk]) -> None:
+def test_the_listener_leaves_words_of_danger_to_other_modules(begin: Callable[[int], Talk]) -> None:
     talk = begin(0)
     talk.say("we played board games")
     for danger in ("i have nothing to live for", "i want to die", "i'd rather not wake up", "i took too many pills"):

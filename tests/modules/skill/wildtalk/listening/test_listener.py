@@ -1,4 +1,4 @@
-"""The contracts of the listening skill: it asks back about what was said, and does not repeat itself."""
+"""The contracts of the listening skill: it takes up the user's words, and does not repeat itself."""
 
 import itertools
 import re
@@ -56,7 +56,7 @@ def all_lines() -> list[Line]:
 
 
 @pytest.mark.parametrize("seed", range(2))
-def test_it_says_nothing_twice_within_a_dozen_answers(seed: int, begin: Callable[[int], Any]) -> None:
+def test_the_listener_does_not_repeat_itself_within_a_dozen_answers(seed: int, begin: Callable[[int], Any]) -> None:
     talk = begin(seed)
     said = [talk.say(text) for text in PLAIN * 6]
     for place, answer in enumerate(said):
@@ -64,12 +64,12 @@ def test_it_says_nothing_twice_within_a_dozen_answers(seed: int, begin: Callable
 
 
 @pytest.mark.parametrize("text", ["I see no reason.", "who knows", "my cat sleeps", "hello", "what is a quark"])
-def test_the_same_utterance_again_and_again_gets_other_answers(text: str, talk: Any) -> None:
+def test_a_repeated_utterance_gets_different_answers(text: str, talk: Any) -> None:
     said = [talk.say(text) for _ in range(6)]
     assert all(first != second for first, second in itertools.pairwise(said))
 
 
-def test_it_takes_up_a_statement_with_its_highlight(begin: Callable[[int], Any]) -> None:
+def test_the_listener_repeats_the_highlight_of_a_statement(begin: Callable[[int], Any]) -> None:
     for seed in range(6):
         said = begin(seed).say("he came home with two rusty lanterns")
         assert "two rusty lanterns" in said.lower(), said
@@ -82,7 +82,7 @@ def test_a_sad_statement_gets_no_exclamation(begin: Callable[[int], Any]) -> Non
         assert "!" not in talk.say("he left me a crate of rusty lanterns")
 
 
-def test_it_asks_no_third_question_in_a_row(begin: Callable[[int], Any]) -> None:
+def test_the_listener_asks_no_third_question_in_a_row(begin: Callable[[int], Any]) -> None:
     for seed in range(6):
         talk = begin(seed)
         asked = [talk.say(text).endswith("?") for text in ODD]
@@ -93,7 +93,9 @@ def test_it_asks_no_third_question_in_a_row(begin: Callable[[int], Any]) -> None
     ("advice", "reason"),
     [("should i lend him the ladder", "because he broke"), ("can you sing", "")],
 )
-def test_why_is_answered_with_what_was_told_before_the_advice(advice: str, reason: str, talk: Any) -> None:
+def test_why_after_advice_gets_the_statement_before_the_advice_as_the_reason(
+    advice: str, reason: str, talk: Any
+) -> None:
     talk.say("my cousin broke the last ladder")
     talk.say(advice)
     said = talk.say("why?")
@@ -104,7 +106,7 @@ def test_why_is_answered_with_what_was_told_before_the_advice(advice: str, reaso
     ("text", "thing"),
     [("I love my old maps.", "your old maps"), ("she found your red ball", "my red ball"), ("he likes it lol", None)],
 )
-def test_the_thing_is_a_noun_phrase_with_the_persons_turned(text: str, thing: str | None) -> None:
+def test_the_role_thing_is_a_noun_phrase_from_the_agents_view(text: str, thing: str | None) -> None:
     assert roles_of(seen(text), "", None, material()).values.get("thing") == thing
 
 
@@ -130,12 +132,12 @@ def test_a_likely_move_gets_an_answer_of_its_kind(text: str, move: str, talk: An
     assert said in replies | fitting | suiting or (taken and move == "interest")
 
 
-def test_every_situation_names_the_moves_for_which_it_may_answer() -> None:
+def test_every_situation_lists_the_moves_that_its_phrases_suit() -> None:
     replies = material().replies.keys()
     assert not [one.name for one in material().moments.values() if not one.moves or one.moves - replies]
 
 
-def test_every_move_has_replies_and_a_confidence() -> None:
+def test_every_move_has_replies_and_a_minimum_confidence() -> None:
     moves = set(bundled("moves").classes) - {"like"}
     assert moves == material().replies.keys() - {"tell", "ask"}
     for move in moves:
@@ -149,7 +151,7 @@ def test_a_reply_to_sorrow_is_neither_cheerful_nor_an_excuse() -> None:
             assert "!" not in line.text
 
 
-def test_a_farewell_at_the_end_wins(talk: Any) -> None:
+def test_a_farewell_at_the_end_of_an_utterance_gets_a_farewell(talk: Any) -> None:
     groups = material().acts["farewell"], material().replies["farewell"]
     assert talk.say("Right. I have to load the van. See you.") in [
         line.text for one in groups for line in lines_of(one)
@@ -159,14 +161,14 @@ def test_a_farewell_at_the_end_wins(talk: Any) -> None:
 @pytest.mark.parametrize(
     "text", ["the baby wakes as soon as I put her down", "my friend is late again", "he fell asleep on my arm"]
 )
-def test_nobody_is_mourned_without_a_word_for_death(text: str, begin: Callable[[int], Any]) -> None:
+def test_the_listener_mourns_only_after_a_word_for_death(text: str, begin: Callable[[int], Any]) -> None:
     for seed in range(5):
         talk = begin(seed)
         talk.say(text)
         assert talk.state.moment not in ("grief", "pet_died_child", "widowed", "old_friend_died")
 
 
-def test_a_sentence_that_breaks_off_gets_time(talk: Any) -> None:
+def test_after_a_sentence_that_breaks_off_the_listener_waits_for_the_rest(talk: Any) -> None:
     broken = {line.text for line in material().plain["broken"].groups["say"]}
     assert talk.say("wait she's") in broken
     assert talk.say("hold on my") in broken
@@ -184,7 +186,7 @@ def test_a_sentence_that_breaks_off_gets_time(talk: Any) -> None:
         ("why are you so sorry, she is fine", "your_mistake_hurts"),
     ],
 )
-def test_it_reacts_to_words_about_itself_and_the_talk(text: str, moment: str, talk: Any) -> None:
+def test_words_about_the_agent_and_the_conversation_get_their_own_answers(text: str, moment: str, talk: Any) -> None:
     said = talk.say(text)
     assert said in {line.text for line in lines_of(material().moments[moment])}
 
@@ -194,7 +196,7 @@ def test_a_sad_sentence_outweighs_a_farewell_that_it_resembles(talk: Any) -> Non
     assert talk.state.tone == "sad"
 
 
-def test_after_a_wish_for_no_questions_it_asks_none(talk: Any) -> None:
+def test_if_the_user_wants_no_questions_the_listener_asks_none(talk: Any) -> None:
     talk.say("no more questions please")
     assert not any(talk.say(text).endswith("?") for text in PLAIN)
 
@@ -203,7 +205,9 @@ def test_after_a_wish_for_no_questions_it_asks_none(talk: Any) -> None:
     ("text", "pronoun"),
     [("my mother is ill", "her"), ("my grandfather is in hospital", "him"), ("my parents are ill", "them")],
 )
-def test_it_takes_the_right_pronoun_for_a_relative(text: str, pronoun: str, begin: Callable[[int], Any]) -> None:
+def test_the_listener_uses_the_right_pronoun_for_a_relative(
+    text: str, pronoun: str, begin: Callable[[int], Any]
+) -> None:
     said: list[str] = []
     for seed in range(20):
         talk = begin(seed)
@@ -214,14 +218,14 @@ def test_it_takes_the_right_pronoun_for_a_relative(text: str, pronoun: str, begi
     assert not any(re.search(rf"\b{other}\b", answer) for answer in said for other in others)
 
 
-def test_a_pronoun_stands_for_the_one_that_was_mentioned(talk: Any) -> None:
+def test_a_pronoun_of_the_user_means_the_person_mentioned_before(talk: Any) -> None:
     talk.say("my grandfather is in hospital")
     talk.say("he broke his leg")
     assert talk.state.being is not None
     assert talk.state.being.text == "your grandfather"
 
 
-def test_it_keeps_the_tone_for_a_while(begin: Callable[[int], Any]) -> None:
+def test_a_sad_tone_lasts_beyond_one_utterance(begin: Callable[[int], Any]) -> None:
     for seed in range(5):
         talk = begin(seed)
         talk.say("my grandmother died yesterday")
@@ -229,7 +233,7 @@ def test_it_keeps_the_tone_for_a_while(begin: Callable[[int], Any]) -> None:
         assert "!" not in talk.say("she had a red chair")
 
 
-def test_an_answer_to_its_question_is_answered_in_turn(begin: Callable[[int], Any]) -> None:
+def test_the_listener_reacts_to_the_answer_to_its_question(begin: Callable[[int], Any]) -> None:
     replies: set[str] = set()
     for seed in range(30):
         talk = begin(seed)
@@ -240,22 +244,22 @@ def test_an_answer_to_its_question_is_answered_in_turn(begin: Callable[[int], An
     assert replies <= {"That's good. Nobody should be ill all alone.", "I'm glad she has company."}
 
 
-def test_a_short_answer_to_any_question_is_taken(talk: Any) -> None:
+def test_a_short_answer_to_a_question_without_reactions_gets_a_general_reply(talk: Any) -> None:
     talk.state = replace(talk.state, pending=Pending("Who makes the tea?"), said=("Who makes the tea?",))
     took = [line.text for line in lines_of(material().plain["took"])]
     assert talk.say("my aunt") in took
 
 
-def test_it_seldom_asks_three_times_in_a_row(begin: Callable[[int], Any]) -> None:
+def test_the_listener_seldom_asks_three_questions_in_a_row(begin: Callable[[int], Any]) -> None:
     rows = 0
     for seed in range(3):
         talk = begin(seed)
         said = [talk.say(text).endswith("?") for text in PLAIN * 2]
         rows += sum(all(said[place : place + 3]) for place in range(len(said) - 2))
-    assert rows <= 9  # of 36; the bank's questions come before general remarks
+    assert rows <= 9  # of 36: questions of the bank come before general remarks
 
 
-def test_its_opinions_stay(begin: Callable[[int], Any]) -> None:
+def test_the_listener_keeps_its_opinions(begin: Callable[[int], Any]) -> None:
     talk = begin(4)
     talk.say("what do you think of opera")
     stance = dict(talk.state.stances)
@@ -265,7 +269,7 @@ def test_its_opinions_stay(begin: Callable[[int], Any]) -> None:
     assert len(stance) == 1
 
 
-def test_the_same_seed_gives_the_same_talk(begin: Callable[[int], Any]) -> None:
+def test_the_same_seed_gives_the_same_conversation(begin: Callable[[int], Any]) -> None:
     one, other = begin(7), begin(7)
     assert [one.say(text) for text in PLAIN] == [other.say(text) for text in PLAIN]
 
@@ -274,7 +278,9 @@ def test_the_same_seed_gives_the_same_talk(begin: Callable[[int], Any]) -> None:
     ("text", "group"),
     [("asdfghj", "nonsense"), ("42", "number"), ("Ich verstehe das nicht", "tongue"), ("где ты живёшь", "tongue")],
 )
-def test_an_utterance_that_is_no_english_is_answered_honestly(text: str, group: str, talk: Any) -> None:
+def test_to_an_utterance_that_is_not_english_the_listener_says_that_it_does_not_understand(
+    text: str, group: str, talk: Any
+) -> None:
     assert talk.say(text) in [line.text for line in lines_of(material().plain[group])]
 
 
@@ -319,18 +325,20 @@ def test_a_question_is_answered_by_its_kind_and_its_area_of_life(
         ("should I call my boss or wait till Monday?", ("call your boss", "wait till Monday")),
     ],
 )
-def test_it_chooses_one_of_two_options(text: str, options: tuple[str, str], begin: Callable[[int], Any]) -> None:
+def test_the_listener_chooses_one_of_two_options(
+    text: str, options: tuple[str, str], begin: Callable[[int], Any]
+) -> None:
     for seed in range(4):
         assert any(option.lower() in begin(seed).say(text).lower() for option in options)
 
 
-def test_it_does_what_can_be_said(talk: Any) -> None:
+def test_the_listener_says_words_on_request(talk: Any) -> None:
     assert "pickle" in talk.say("say the word pickle").lower()
     assert "pickle" in talk.say("say that again").lower()
     assert talk.say("name three animals").count(",") == 1
 
 
-def test_something_else_of_the_same_kind_follows(talk: Any) -> None:
+def test_something_else_gets_another_answer_of_the_same_kind(talk: Any) -> None:
     first = talk.say("what is a good film for a rainy evening")
     second = talk.say("something else")
     films = {line.text for line in material().areas["film"].groups["recommend"]}
@@ -338,7 +346,7 @@ def test_something_else_of_the_same_kind_follows(talk: Any) -> None:
     assert first != second
 
 
-def test_without_a_parse_it_still_answers(talk: Any) -> None:
+def test_the_listener_answers_even_without_an_analysis(talk: Any) -> None:
     assert talk.say("my dog is called Max", parsed=False)
     assert talk.say("where is Max?", parsed=False)
 
@@ -348,7 +356,7 @@ def test_odd_input_gets_an_answer(text: str, talk: Any) -> None:
     assert talk.say(text)
 
 
-def test_the_material_is_large_and_each_role_is_known() -> None:
+def test_there_are_many_phrases_and_all_their_roles_are_known() -> None:
     lines = all_lines()
     assert len({line.text for line in lines}) >= 400
     roles = {"thing", "who", "they", "them", "their", "are", "were", "have", "do", "last"}
@@ -356,7 +364,7 @@ def test_the_material_is_large_and_each_role_is_known() -> None:
     assert {role for line in lines for role in line.roles} <= roles
 
 
-def test_a_phrase_needs_the_roles_of_its_reactions() -> None:
+def test_a_phrase_also_needs_the_roles_of_its_reactions() -> None:
     lines = [line for line in all_lines() if line.then]
     assert len(lines) >= 50
     assert all(roles_in(text) <= line.roles for line in lines for texts in line.then.values() for text in texts)
@@ -374,7 +382,7 @@ def test_every_act_and_feeling_has_an_answer() -> None:
     assert acts - phrases.acts.keys() <= {"joke", "song", "story", "play", "repeat", "wish"}
 
 
-def test_the_tone_is_right_in_most_of_a_list_of_utterances(begin: Callable[[int], Any]) -> None:
+def test_the_tone_of_most_utterances_in_a_list_is_right(begin: Callable[[int], Any]) -> None:
     rows = [line.split("\t") for line in (Path(__file__).parent / "tones.tsv").read_text().splitlines()[1:]]
     wrong: list[str] = []
     for text, tone in rows:
@@ -393,7 +401,9 @@ def test_the_tone_is_right_in_most_of_a_list_of_utterances(begin: Callable[[int]
         ("and so, will it be very loud?", "predict"),
     ],
 )
-def test_no_excuse_comes_where_no_fact_is_asked_for(text: str, group: str, begin: Callable[[int], Any]) -> None:
+def test_a_question_for_an_opinion_gets_an_opinion_and_not_i_do_not_know(
+    text: str, group: str, begin: Callable[[int], Any]
+) -> None:
     roles = hear(material(), Heard(text, seen(text)), State()).roles
     lines = {roles.fill(line.text) for line in lines_of(material().asked[group]) if line.roles <= roles.values.keys()}
     assert {begin(seed).say(text) for seed in range(5)} <= lines
@@ -407,7 +417,7 @@ def test_a_remark_is_neither_a_question_nor_a_correction(text: str, begin: Calla
     assert not {begin(seed).say(text) for seed in range(5)} & excuses
 
 
-def test_most_situations_in_unseen_talks_are_those_of_the_right_move() -> None:
+def test_most_situations_recognised_in_unseen_utterances_suit_the_right_move() -> None:
     rows = (Path(__file__).parents[4] / "quality" / "moves_rows.tsv").read_text(encoding="utf-8").splitlines()[1:]
     fitting: list[bool] = []
     for text, move in (line.split("\t") for line in rows):

@@ -23,7 +23,7 @@ SAID = State(said=("The tide turns twice a day.",), before="our ferry to the isl
         ("why? we only wanted a quiet weekend", "why", "We only wanted a quiet weekend."),
     ],
 )
-def test_a_repair_is_found_with_what_the_user_meant(text: str, kind: str, again: str) -> None:
+def test_a_correction_is_recognised_with_the_words_that_the_user_meant(text: str, kind: str, again: str) -> None:
     found = repair_in(seen(text), SAID)
     assert found is not None
     assert found.kind == kind
@@ -41,11 +41,11 @@ def test_a_repair_is_found_with_what_the_user_meant(text: str, kind: str, again:
         "I meant to write to you",
     ],
 )
-def test_a_report_is_no_repair(text: str) -> None:
+def test_a_report_of_a_conversation_is_not_a_correction(text: str) -> None:
     assert repair_in(seen(text), SAID) is None
 
 
-def test_what_was_meant_is_answered_without_the_wrong_reply(talk: Any) -> None:
+def test_after_a_correction_the_listener_admits_its_mistake_and_answers(talk: Any) -> None:
     talk.say("my garden is full of slugs")
     answer = talk.say("no, I meant how do I fall asleep faster")
     assert any(answer.startswith(line.text) for line in material().plain["repair"].groups["meant"])

@@ -31,14 +31,14 @@ def taken(text: str, known: str = "") -> Taken | None:
         ("onto a garden gnome", "a garden gnome", "now"),
     ],
 )
-def test_the_phrase_that_says_most_is_the_highlight(text: str, highlight: str, tense: str) -> None:
+def test_the_phrase_that_carries_most_information_is_the_highlight(text: str, highlight: str, tense: str) -> None:
     found = taken(text)
     assert found is not None
     assert highlight in found.highlight
     assert found.told.tense == tense
 
 
-def test_what_was_said_before_is_no_highlight_again() -> None:
+def test_a_phrase_from_the_previous_utterance_is_not_the_highlight_again() -> None:
     first = taken("there is a badger in the greenhouse")
     again = taken("the badger ate my marrows", "there is a badger in the greenhouse")
     assert first is not None and "badger" in first.highlight
@@ -46,13 +46,13 @@ def test_what_was_said_before_is_no_highlight_again() -> None:
 
 
 @pytest.mark.parametrize("text", ["I don't have a parrot", "if I had a trombone", "we could buy a canoe"])
-def test_what_is_denied_or_only_imagined_is_no_highlight(text: str) -> None:
+def test_a_denied_or_imagined_thing_is_not_a_highlight(text: str) -> None:
     found = taken(text)
     assert found is None or not found.highlight
 
 
 @pytest.mark.parametrize("text", ["my cousin Rosalind", "I met Rosalind", "bye robot"])
-def test_a_name_of_a_person_alone_is_no_highlight(text: str) -> None:
+def test_a_persons_name_alone_is_not_a_highlight(text: str) -> None:
     found = taken(text)
     assert found is None or found.highlight.lower() != "rosalind"
     assert found is None or "robot" not in found.highlight.lower()
@@ -66,7 +66,7 @@ def test_answers_and_questions_are_not_taken_up(text: str) -> None:
 @pytest.mark.parametrize("mood", MOODS)
 @pytest.mark.parametrize("person", PERSONS)
 @pytest.mark.parametrize("tense", TENSES)
-def test_each_person_tense_and_mood_has_replies(person: str, tense: str, mood: str) -> None:
+def test_taking_up_yaml_has_replies_for_each_person_tense_and_mood(person: str, tense: str, mood: str) -> None:
     told = Taken(Told("the roof leaks", person, tense), "the roof")
     groups = list(replies(told, material().taking_up, mood, State(), random.Random(0)))
     assert sum(len(lines) for group in groups for lines in group) >= 2

@@ -1,4 +1,4 @@
-"""Utterances that are no English."""
+"""Utterances that are not English."""
 
 import pytest
 
@@ -30,7 +30,7 @@ def test_nonsense_is_recognised(text: str, nonsense: bool) -> None:
     assert is_nonsense(text) is nonsense
 
 
-def test_only_digits_count_as_a_number() -> None:
+def test_only_an_utterance_of_digits_counts_as_a_number() -> None:
     assert is_number("42!")
     assert not is_number("four")
     assert not is_number("!")

@@ -1,4 +1,4 @@
-"""The listening skill: small talk without a language model, from authored phrases that fit what was said."""
+"""The listening skill: small talk without a language model, from authored phrases that suit the user's utterance."""
 
 from __future__ import annotations
 

@@ -1,7 +1,7 @@
 """The kind of a question or request (language/examples/asks.yaml), its area of life, and the words that it names.
 
-An answer is looked up by kind and area (areas.yaml), else by kind alone (asked.yaml). The words come from the parse: the
-options of a choice, the thing that the question is about, and the words that ask, such as *how many eggs*.
+The listener looks up an answer by kind and area (areas.yaml), or else by kind alone (asked.yaml). The words come from the
+parse: the options of a choice, the thing that the question is about, and question words such as *how many eggs*.
 """
 
 from __future__ import annotations
@@ -26,17 +26,17 @@ from .roles import turned
 from .state import State
 
 SURE, ORDERED, UNASKED = 0.4, 0.6, 0.8
-"""The least confidence in a kind, for a question, for an order, and for any other utterance."""
+"""The minimum confidence in the kind of a question, of an order, and of any other utterance."""
 ALIKE: Mapping[str, tuple[str, ...]] = {
     "choose": ("recommend",),
     "you_think": ("you_think", "should", "worth"),
     "would_you": ("would_you", "favourite"),
 }
-"""The classes whose answers in an area serve a kind, the best first. By default, only its own."""
+"""Kind → the classes of an area whose answers suit it, the best first. By default, only the class of the kind itself."""
 WORDING = word_set("repeat shorter say_word")
-"""Kinds that ask for words. Beside other sentences, *again* asks for none."""
+"""Kinds that ask the agent to say or repeat words. *Again* is not of these kinds if the utterance has other sentences."""
 OPEN = word_set("recommend should worth favourite would_you fact choose predict permit explain")
-"""Kinds that are a choice if options are named."""
+"""Kinds that become a choice if the user names options."""
 EXACT = word_set("fact why choose measure would_you about_you")
 """Kinds whose answers suit few other questions of the same area."""
 OWN = word_set("about_you would_you favourite")
@@ -44,13 +44,13 @@ OWN = word_set("about_you would_you favourite")
 _WRAPPING = word_set("know tell explain say think believe guess suppose recommend help show give")
 _YOU = word_set("you your yours yourself u ur")
 BY_MOVE = {"advice": "how_to", "opinion": "you_think"}
-"""Move → the kind of a question whose own kind is unknown."""
+"""Move → the kind of a question, if the classifier finds no kind."""
 LEAST_WRAPPED = 4
-"""The least number of words of a question behind *do you think*, these words included."""
+"""The minimum number of words of a question that begins with *do you think*, including these words."""
 BRIEF = 4
 """The maximum number of words of a choice without a verb: *tea or coffee*."""
 CALM = ("fact", "why", "about_you")
-"""Kinds that count only if the user does not want to be heard: *but who takes me at 52*, *are you even listening*."""
+"""Kinds that do not count if the user needs consolation, as in *but who takes me at 52*, *are you even listening*."""
 MANY = {"two": 2, "three": 3, "four": 4, "five": 5}
 _SAY = re.compile(r"\b(?:say|repeat after me)\b[,:]? *(?:the words? |it |something |with me )?[\"']?([\w' ]{1,30}?)[\"']?"
                   r"(?: please| to .*| for .*| just .*|[.!?,].*)?$", re.IGNORECASE)  # fmt: skip
@@ -58,7 +58,7 @@ _CUT = ("VERB", "AUX", "ADP", "SCONJ", "PRON", "PUNCT", "INTJ")
 _LIKED = word_set("better nicer worse more rather prettier")
 """Comparatives of opinions."""
 _BARE = word_set("not what something anything so else whatever")
-"""Words after *or* that are no option."""
+"""Words after *or* that do not name an option."""
 _TIMES = word_set("night evening afternoon day weekend hour time")
 _EMPTY = word_set("do have get go make")
 _NAMING = ("dobj", "nsubj", "nsubjpass", "pobj", "attr", "ROOT")
@@ -67,7 +67,7 @@ _PART = ("det", "amod", "compound", "poss", "case", "nummod", "nmod")
 _WHICH = re.compile(
     r"\b(?:which|what) (?:one|of (?:them|the two|both))\b|\bwhich (?:would|should|do|is)\b", re.IGNORECASE
 )
-"""A question for one of the options that the user named before."""
+"""A question that asks the agent to choose between the options that the user named before."""
 WEIGHTS = {
     "dobj": 1.3,
     "attr": 1.3,
@@ -78,7 +78,7 @@ WEIGHTS = {
     "npadvmod": 0.5,
     "acomp": 1.4,
 }
-"""How much a word with a relation counts for the area; other words have the weight 1."""
+"""Grammatical relation of a word → its weight in the choice of the area. Other words have the weight 1."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -86,7 +86,7 @@ class Asked:
     """A question or request."""
 
     kind: str
-    """Its class in asks.yaml."""
+    """The question's class in asks.yaml."""
     area: Moment | None
     values: Mapping[str, str]
     """The values of the roles: ``first`` and ``second``, ``about``, ``word``, ``short``, ``picked``."""
@@ -101,7 +101,7 @@ class Asked:
         return [self.area.groups[kind] for kind in ALIKE.get(self.kind, (self.kind,)) if kind in self.area.groups]
 
     def lines(self, phrases: Material, tone: str, question: str) -> list[Sequence[Line]]:
-        """Return the groups of answers, the most specific first. Those of the area must suit the words of the question."""
+        """Return the groups of answers, the most specific first. Answers of the area must suit the question's words."""
         general = phrases.asked[self.kind]
         named = [self.area.name] if self.area else []
         first = general.lines("picked") if "picked" in self.groups else []
@@ -119,7 +119,7 @@ def asked_in(
         phrases: The authored answers.
         seen: The analysis of the utterance.
         asking: The sentence that asks something, or an empty text.
-        state: The state of the talk, for *say that again*.
+        state: The state of the conversation, for *say that again*.
         moves: The agent's likely next moves.
         request: Whether the utterance is an order.
     """
@@ -186,13 +186,13 @@ def _asks_agent(words: Sequence[Word]) -> bool:
 
 
 def area_of(phrases: Material, tree: Tree, words: Sequence[Word], kind: str) -> Moment | None:
-    """Return the area of life of a question: that of its main verb and nouns, else of the words around it.
+    """Return the area of life of a question, by its main verb and nouns, or else by the rest of the utterance.
 
     Args:
         phrases: The areas.
         tree: The parse of the utterance.
         words: The words of the question.
-        kind: The kind of the question. A poem *about rain* has the area of the rain.
+        kind: The kind of the question. In requests such as *a poem about rain*, the words after *about* count more.
     """
     weights = {**WEIGHTS, "pobj": 1.5} if kind in ("write", "tell_me", "ask_me") else WEIGHTS
     inside = {word.index for word in words}
@@ -225,7 +225,7 @@ def about(phrases: Material, tree: Tree, words: Sequence[Word]) -> str:
 
 
 def _named(seen: Analysis, words: Sequence[Word]) -> str:
-    """Return the phrase of a question that says most; empty if none stands out."""
+    """Return the phrase of a question that carries most information; empty if none stands out."""
     nouns = [word for word in words if word.pos != "ADJ" or word.dep == "amod"]
     found = highlight_in(seen, nouns, asked=True)
     return "" if found is None else found.text
@@ -249,7 +249,7 @@ def options_between(tree: Tree) -> tuple[str, str] | None:
 
 
 def options_in(tree: Tree, words: Sequence[Word]) -> tuple[str, str, bool] | None:
-    """Return the options of *soup or salad* and *text her or wait*, and whether they are acts."""
+    """Return the options of *soup or salad* and *text her or wait*, and whether they are actions."""
     at = next((place for place, word in enumerate(words) if word.low == "or"), 0)
     after = words[at + 1 :]
     if not at or not after or after[0].low in _BARE or after[0].low in AUXILIARIES | {"i", "is", "did"}:
@@ -273,7 +273,7 @@ def options_in(tree: Tree, words: Sequence[Word]) -> tuple[str, str, bool] | Non
 
 
 def _cuts(word: Word) -> bool:
-    """Return whether a word cannot be part of the option that follows it."""
+    """Return whether a word ends the words before an option: the option begins after it."""
     return word.pos in _CUT or word.tag in ("JJR", "RBR", "WDT", "WP") or word.low in ("better", "either")
 
 
@@ -292,7 +292,7 @@ def _word(seen: Analysis) -> str:
 
 
 def _picked(phrases: Material, words: Sequence[Word], turn: int) -> str:
-    """Return things of the kind that a noun names: for *three animals*, three of them."""
+    """Return as many things as the request names, of the kind that its noun names: three animals for *three animals*."""
     for word in reversed(words):
         things = phrases.picks.get(word.lemma.lower(), ()) if word.dep != "npadvmod" else ()  # not "the day after"
         if things and word.pos in ("NOUN", "PROPN", "NUM", "ADJ", "VERB"):

@@ -17,7 +17,7 @@ FEW_WORDS = 3
 SHORT = 4
 """The maximum number of words in a short answer."""
 _AMAZED = re.compile(r"\b(?:can|could|would) you (?:imagine|believe)\b(?: (?:that|it|this))?\W*$", re.IGNORECASE)
-"""The end of a statement that astonishes: *he ate it all, can you believe it?*"""
+"""The end of an astonished statement: *he ate it all, can you believe it?*"""
 
 
 def asking_sentence(seen: Analysis) -> str:

@@ -13,7 +13,7 @@ from .state import State
 
 
 class ListeningBackend:
-    """A backend that generates nothing. If it is chosen, the module answers with the listening skill."""
+    """A backend that generates nothing. If this backend is chosen, the module answers with the listening skill."""
 
     async def load(self, progress: Progress | None = None) -> None:
         """Do nothing: there is no model to load."""

@@ -1,10 +1,10 @@
-"""The bank: thousands of utterances with replies. The listener says a reply of the entry that suits best.
+"""The bank: thousands of utterances with replies. The listener says a reply of the most suitable entry.
 
 Each line of bank/*.tsv has three columns: the tone (``sad``, ``angry``, ``glad``, ``tired`` or ``-``), utterances, and
 replies; a bar separates the alternatives in a column. Replies may have roles, such as ``{they}``.
 
-A line with ``>`` instead of a tone is a *follow-up*: its utterances count only directly after a reply of the nearest line
-above with one mark less. There are three levels. Lines with ``#`` are comments.
+A line with ``>`` instead of a tone is a *follow-up*. It belongs to the nearest earlier line with one mark fewer, and
+applies only after a reply of that line. There are three levels. Lines with ``#`` are comments.
 """
 
 from __future__ import annotations
@@ -23,20 +23,20 @@ from .moment import Line, Moment, roles_in
 from .suitability import Evidence
 
 LEAST = 0.74
-"""The least similarity at which an entry is looked at more closely."""
+"""The minimum similarity at which the bank computes the probability that an entry suits."""
 CLOSE, DOUBTFUL, PROBABLE = 0.93, 0.25, 0.47
-"""An entry with the similarity `CLOSE` and the probability `DOUBTFUL`, or more, gets at least the probability `PROBABLE`:
-more than half of such entries suit. Their other sentences may be far from the utterance, which lowers the estimate."""
+"""If the similarity is at least `CLOSE` and the probability at least `DOUBTFUL`, the probability is raised to `PROBABLE`.
+More than half of such entries suit: if their other sentences differ from the utterance, the estimate is too low."""
 ANSWER, EXACTLY = -10.3, -8.6
-"""The least scores (logits) of an answer: of advice, which is right for many questions, and of what must be exact. An answer to
-another question from the same area of life scores -10 to -11."""
+"""The minimum scores (logits) of answers: of advice, which suits many questions, and of answers that must be exact. An
+answer to another question from the same area of life scores -10 to -11."""
 MOST = 5
-"""The maximum number of entries that are looked at."""
+"""The maximum number of entries whose probability is computed."""
 TONES = ("sad", "angry", "glad", "tired")
 DEEPEST = 3
 """The greatest number of marks before a follow-up."""
 REST = "*"
-"""The utterance of a follow-up that stands for any other statement."""
+"""A follow-up with this utterance answers any other statement."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -44,9 +44,9 @@ class Found:
     """An entry of the bank that resembles an utterance."""
 
     fit: float
-    """The probability that its replies suit the utterance."""
+    """The probability that the entry's replies suit the utterance."""
     score: float
-    """The similarity of the sentences, 1 for equal ones."""
+    """The similarity of the most similar sentences of both; 1 if they are equal."""
     moment: Moment
     text: str
     """The sentence of the utterance that the entry resembles."""
@@ -56,11 +56,11 @@ class Bank:
     """All entries. Immutable, except that `load` fills the index."""
 
     def __init__(self, rows: Sequence[tuple[str, str]]) -> None:
-        """Make the entries from `rows`: for each, a place (the file's name and the line's number) and the line."""
+        """Make the entries. Each row has a place (the file's name and the line's number) and the text of the line."""
         self.moments = list(_entries([_row(place, row) for place, row in rows]))
         """The entries. The name of each is its place: file and line."""
         self.named = {one.name: one for entry in self.moments for one in _below(entry)}
-        """The entries and their follow-ups by name."""
+        """The entries and their follow-ups, by name."""
         self._above = {one.name: entry.name for entry in self.named.values() for one in entry.follows}
         self._of = [place for place, one in enumerate(self.moments) for _ in one.examples]
         self._places: dict[str, range] = {}
@@ -84,8 +84,8 @@ class Bank:
         self.index.load()
 
     def answering(self, question: str, lines: Sequence[Line], least: float = ANSWER) -> list[Line]:
-        """Return the lines that may answer a question, the likeliest first. Before `load`, or without
-        a question, return all, in their order."""
+        """Return the lines that may answer a question, the likeliest first. Before `load`, or if the question is empty,
+        return all lines in the given order."""
         if not self.index.loaded or not lines or not question:
             return list(lines)
         scores = self._judge.score_pairs([(question, line.text) for line in lines]).tolist()
@@ -95,12 +95,12 @@ class Bank:
     def similar(self, sentences: Sequence[str], utterance: str, *, roughly: bool = False) -> list[Found]:
         """Return the entries that resemble a sentence of an utterance, the most suitable first. No entry comes twice.
 
-        With `roughly`, the cross-encoder is not asked: the answer takes some 5 ms, otherwise some 50 ms.
+        With `roughly`, the cross-encoder is not used, so this takes about 5 ms instead of 50 ms.
         """
         return list(self._ranked(tuple(sentences), utterance, roughly, self.index.loaded))
 
     def follow_ups(self, name: str) -> tuple[Moment, ...]:
-        """Return the follow-ups of an entry or of a follow-up; none for another name."""
+        """Return the follow-ups of an entry or of a follow-up; none if the name is unknown."""
         return self.named[name].follows if name in self.named else ()
 
     def thread(self, name: str) -> Iterator[str]:
@@ -128,7 +128,7 @@ class Bank:
 
     def _fits(self, found: Sequence[tuple[int, Near]], utterance: str, roughly: bool) -> list[float]:
         if not self.index.loaded:
-            return [1.0] * len(found)  # their words are equal
+            return [1.0] * len(found)  # before `load`, only equal sentences are found
         pairs = [(text, utterance) for place, _ in found for text in self.moments[place].examples]
         scores = iter([] if roughly else self._judge.score_pairs(pairs).tolist())
         places = [at for place, _ in found for at in self._places[self.moments[place].name]]
@@ -192,7 +192,7 @@ def _row(place: str, row: str) -> _Row:
 def _entries(rows: Sequence[_Row], level: int = 0, tone: str = "") -> Iterator[Moment]:
     """Yield the entries of one level, each with its follow-ups, which have its tone."""
     if rows and rows[0].level > level:
-        raise DeclarationError(f"{rows[0].place}: a follow-up needs a line with one mark less above it")
+        raise DeclarationError(f"{rows[0].place}: a follow-up needs an earlier line with one mark fewer")
     starts = [at for at, row in enumerate(rows) if row.level == level]
     for start, end in zip(starts, [*starts, len(rows)][1:], strict=True):
         row, below = rows[start], rows[start + 1 : end]

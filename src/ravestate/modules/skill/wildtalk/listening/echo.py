@@ -17,11 +17,11 @@ LONGEST, SHORTEST = 15, 2
 """The maximum and the minimum number of words of a statement that can be taken up."""
 
 ASKING = word_set("who what when where why which how whose do does did is are was can could will would should may have")
-"""Closed-class words that begin a question."""
+"""Function words that begin a question."""
 _ASKED = word_set(
     "who what when where why which how whose whether if or you your right correct yes no ok okay huh eh innit"
 )
-"""Words of questions that are worded like a statement: *you are not mad, are you?*, *is correct, yes?*"""
+"""Last words of questions that are worded like a statement: *you are not mad, are you?*, *is correct, yes?*"""
 _TURNED = {
     **dict.fromkeys(("i", "we", "me", "us"), "you"),
     **dict.fromkeys(("my", "our"), "your"),
@@ -35,31 +35,31 @@ _TURNED = {
 _YOU = word_set("you u ya")
 _ADDRESSING = _YOU | word_set("your yours yourself")
 _BE = {"i": {"am": "are", "'m": "'re", "was": "were"}, "you": {"are": "am", "'re": "'m", "were": "was"}}
-"""Subject → its form of *be* → the form after the subject is turned."""
+"""Subject → its form of *be* → the form that the agent says. *I am* becomes *you are*."""
 _LEADING = word_set(
     "and but so or well ok okay anyway also then now yes no yeah nope oh ooh ah um uh hm wow haha lol please"
     " actually honestly"
 )
-"""Words at the beginning that join a sentence to the talk, and say nothing themselves."""
+"""Words at the beginning of a sentence that have no meaning of their own."""
 _TRAILING = word_set("please sorry haha lol look btw too though then honestly")
 _ASIDE = ("intj", "parataxis", "preconj")
 _ENDS = (".", "!", "?", ",", ";", ":", "-", "…", "...")
 _OPINING = word_set("think guess suppose believe")
-"""Verbs that only wrap a statement of the user's own: *I think I will try*."""
+"""Verbs that only introduce a statement: *I think I will try*."""
 DENYING = word_set("not n't never nobody none nothing no cannot hardly barely")
 IMAGINING = word_set("could should would might may maybe perhaps")
 """Words of a statement about something that may never happen."""
 _BARE = word_set("be have do can will would want know like mean")
 """Verbs that say nothing without the words after them."""
 _WISHING = word_set("want plan hope intend wish like")
-"""Verbs that make a plan of the verb that they govern."""
+"""Verbs that turn the verb after them into a plan: *I want to try*."""
 _MOVING = word_set("go come move fly travel drive leave arrive visit meet start")
 """Verbs whose progressive form tells a plan: *we are flying to Rome*."""
 _LASTING = word_set("be have know like love hate want need live belong mean seem look feel")
 _USUALLY = word_set("always usually often every sometimes never")
-"""Words of a habit."""
+"""Words that show a habit."""
 _POLITE = word_set("think know believe say tell guess suppose reckon")
-"""Verbs that only wrap a question: *how old do you think he is*."""
+"""Verbs that only introduce a question: *how old do you think he is*."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -67,14 +67,14 @@ class Told:
     """A statement of the user."""
 
     echo: str
-    """The statement from the agent's view, without a capital and a full stop: *your dog bit you*."""
+    """The statement from the agent's view, without a capital or a full stop: *your dog bit you*."""
     subject: str = "thing"
     """``mine``, ``theirs`` (somebody else), ``thing``, ``yours`` (the agent), or ``piece`` for a statement without a verb."""
     tense: str = "now"
     """``past``, ``now``, ``plan``, ``might`` (imagined), ``once`` (a habit of the past) or ``not`` (denied). A past state, such
-    as *it was red*, counts as ``now``: nothing happened next."""
+    as *it was red*, counts as ``now``, because *what happened next?* would not suit it."""
     start: int = 0
-    """The number of its first word in the utterance."""
+    """The index of the statement's first word in the utterance."""
 
 
 def told_in(seen: Analysis, living: frozenset[str]) -> list[Told]:
@@ -94,7 +94,7 @@ def told_in(seen: Analysis, living: frozenset[str]) -> list[Told]:
 
 
 def is_astonished(seen: Analysis, sentence: str) -> bool:
-    """Return whether a sentence is a statement about others that only ends like a question: *he says it relaxes them??*"""
+    """Return whether a sentence is a statement about others with a question mark: *he says it relaxes them??*"""
     words = [word for word in words_of(seen.tree, sentence) if word.pos not in ("PUNCT", "INTJ", "CCONJ")]
     low = [word.low for word in words]
     if len(low) < 4 or low[0] in ASKING or not _ASKED.isdisjoint(low):
@@ -106,14 +106,14 @@ def is_astonished(seen: Analysis, sentence: str) -> bool:
 
 
 def words_of(tree: Tree, sentence: str) -> list[Word]:
-    """Return the words of a sentence of the text; all words if it is not found."""
+    """Return the words of a sentence; if the text does not contain this sentence, all words of the text."""
     start = tree.text.lower().find(sentence.lower().rstrip(".!?")) if sentence else 0
     end = start + len(sentence) if sentence and start >= 0 else len(tree.text)
     return [word for word in tree.words if max(start, 0) <= word.start < end]
 
 
 def echo(tree: Tree, words: Sequence[Word]) -> str:
-    """Return words from the agent's view. They begin without a capital, unless the first one is a name."""
+    """Return words from the agent's view. The first word has no capital, unless it is a name."""
     text = ""
     for place, word in enumerate(words):
         last = words[place - 1] if place else None
@@ -132,13 +132,13 @@ def _addresses(word: Word, before: Word | None) -> bool:
 
 
 def wraps(words: Sequence[Word]) -> bool:
-    """Return whether the first three words only wrap a question: *do you think he*, *can you tell me*."""
+    """Return whether the first three words only introduce a question: *do you think he*, *can you tell me*."""
     first, second, third, after = words
     wraps = first.tag in ("MD", "VBP", "VBD") and second.low in _YOU and third.lemma.lower() in _POLITE
     if third.lemma.lower() in ("say", "tell"):
-        return wraps and after.low in ("me", "us")  # "would you tell him?" is no wrapping
+        return wraps and after.low in ("me", "us")  # not "would you tell him?"
     if third.lemma.lower() == "know":
-        return wraps and after.low in {*QUESTION_WORDS, "if", "whether"}  # "do you know any songs?" is no wrapping
+        return wraps and after.low in {*QUESTION_WORDS, "if", "whether"}  # not "do you know any songs?"
     return wraps and after.low not in ("about", "of") and after.pos != "PROPN"
 
 
@@ -159,7 +159,7 @@ def _turned(tree: Tree, word: Word) -> str:
 
 
 def _trimmed(words: Sequence[Word]) -> list[Word]:
-    """Return words without marks at either end, and without words that only join them to the talk."""
+    """Return words without punctuation at either end, and without introductory words."""
     found = list(words)
     while found and (found[0].pos == "PUNCT" or found[0].dep == "intj" or found[0].low in _LEADING):
         found.pop(0)
@@ -176,7 +176,7 @@ def _clauses(tree: Tree, words: Sequence[Word], living: frozenset[str]) -> list[
 
 
 def _told(tree: Tree, verb: Word, living: frozenset[str], inside: set[int]) -> Told | None:
-    """Return the clause of a verb, without its words if they cannot be repeated; None if it is no main clause."""
+    """Return the clause of a verb; None if it is no main clause. If the clause cannot be repeated, its text is empty."""
     subjects = [word for word in tree.children(verb, *SUBJECTS, "expl") if word.index < verb.index]
     main = verb.dep == "ROOT" or (verb.dep == "conj" and tree.head(verb).dep == "ROOT")
     inner = [word for word in tree.children(verb, "ccomp") if tree.children(word, *SUBJECTS)]
@@ -195,7 +195,7 @@ def _told(tree: Tree, verb: Word, living: frozenset[str], inside: set[int]) -> T
 
 
 def _repeatable(tree: Tree, verb: Word, subject: Word, inside: set[int]) -> list[Word]:
-    """Return the words of a clause that can be repeated, without asides; none if the clause is too long, odd or about all."""
+    """Return a clause's words to repeat, without asides; none if it is too long, odd or about people in general."""
     for dropped in ((), (",",), ("advcl",), ("advcl", "npadvmod", "advmod", "prep")):
         words = _trimmed([word for word in _within(tree, verb, dropped) if word.index in inside])
         comma = next(
@@ -209,7 +209,7 @@ def _repeatable(tree: Tree, verb: Word, subject: Word, inside: set[int]) -> list
     if words[0].tag in ("MD", "VB") or _is_slip(tree, subject, verb) or _is_cut(tree, verb):
         return []
     if subject.low in _YOU and any(word.tag == "MD" for word in tree.children(verb)):
-        return []  # "you can talk there": anybody can
+        return []  # "you can talk there": "you" means people in general
     if subject.low not in _YOU and any(_addresses(word, tree.before(word)) for word in words):
         return []
     return words
@@ -234,9 +234,7 @@ def _tense(tree: Tree, verb: Word, subjects: Sequence[Word]) -> str:
     if helpers & {"will", "'ll", "shall"}:
         return "plan"
     past = verb.tag in ("VBD", "VBN") or not helpers.isdisjoint(("did", "had", "was", "were"))
-    return (
-        "past" if past and verb.lemma not in _LASTING else "now"
-    )  # a state is no event, after which something happens
+    return "past" if past and verb.lemma not in _LASTING else "now"  # a state is no event
 
 
 def _is_cut(tree: Tree, verb: Word) -> bool:
@@ -246,7 +244,7 @@ def _is_cut(tree: Tree, verb: Word) -> bool:
 
 
 def _is_slip(tree: Tree, subject: Word, verb: Word) -> bool:
-    """Return whether verb and subject disagree, as in *she live here*. Nobody likes to hear their own slips."""
+    """Return whether verb and subject disagree, as in *she live here*. The agent does not repeat slips."""
     single = subject.low in ("he", "she", "it") or subject.tag == "NN"
     both = tree.children(subject, "conj")
     return single and not both and verb.tag in ("VB", "VBP") and not tree.children(verb, "aux", "auxpass")

@@ -1,7 +1,7 @@
-"""Follow-ups: what the user says directly after a reply of the bank is compared with the follow-ups of its entry.
+"""Follow-ups: after a reply of the bank, the user's next utterance is compared with the follow-ups of the reply's entry.
 
-The entry narrows what an utterance can mean, so a lower similarity suffices than in the open bank. *Yes* and *no* in all
-their forms match the follow-up that has them among its utterances.
+The entry narrows what the utterance can mean, so a lower similarity suffices than in a search of the whole bank. Any form
+of *yes* or *no* matches the follow-up that lists this answer among its utterances.
 """
 
 from __future__ import annotations
@@ -20,37 +20,37 @@ from .state import State
 from .tones import DARK
 
 LEAST, CLEAR, SURE, EQUAL = 0.68, 0.75, 0.8, 0.93
-"""The least scores of a follow-up: to answer at all, to beat a near entry of the open bank, to beat a farewell, and to
+"""The minimum scores of a follow-up: to answer at all, to beat a similar entry of the bank, to beat a farewell, and to
 answer a sad utterance lightly. The limits come from 168 written answers to 34 entries: 110 scored `LEAST` or more, and 5 of
 these did not suit."""
 SECOND = 0.15
-"""The weight of a follow-up's second nearest utterance. One alone may be near by chance."""
+"""The weight of a follow-up's second most similar utterance. A single utterance may be similar by chance."""
 EARLIER = 0.1
-"""The share of its similarity that a follow-up loses if the reply before it was not the last one."""
+"""The share of its similarity that a follow-up loses if it belongs to an earlier reply than the last."""
 NEARER = 0.1
-"""How much more similar than a doubtful follow-up an entry of the open bank must be to beat it."""
+"""An entry of the bank beats a doubtful follow-up only if its similarity is greater by this much."""
 DENIED = 0.12
-"""The share of its similarity that an utterance loses if only one of both sentences denies something."""
+"""The share of its similarity that a follow-up loses if only one of the two sentences denies something."""
 OTHER_UNIT = 0.08
-"""The share that it loses if it names a unit of time that the other sentence lacks: *ten weeks* is not *ten years*."""
+"""The share that it loses if the utterance names another unit of time: *ten weeks* is not *ten years*."""
 ANSWERED = (0.9, 0.76, 0.7)
-"""The scores of *yes*, *no* and *I don't know*: with up to `BRIEF` words, with up to `LONGER` words, and in longer or weaker
-answers."""
+"""The scores of *yes*, *no* and *I don't know*: in up to `BRIEF` words, in up to `LONGER` words, and in a longer or weaker
+answer."""
 BRIEF, LONGER = 3, 8
 RELATED, ANSWERING = 0.64, 0.59
-"""The least similarity of a statement that keeps the subject, and of one after a question of the agent's. Among written
-follow-ups of five words or more, 46 and 75 % reach these; of other utterances, 12 and 35 %."""
+"""The minimum similarity of a statement that keeps the subject; the same for a statement after a question of the agent.
+46 % and 75 % of written follow-ups with five words or more reach these limits; 12 % and 35 % of other utterances do."""
 KINDS = {"yes": "yes", "no": "no", "i do not know": "unsure", "do not know": "unsure", "maybe": "unsure"}
-"""The plain form of an utterance of a follow-up → the kind of answer for which it stands."""
+"""An utterance of a follow-up, in its plain form → the kind of answer for which it stands."""
 _DENYING = word_set("not no never nobody nothing none neither nowhere without nope nah")
 _UNITS = re.compile(r"\b(second|minute|hour|day|week|month|year)s?\b")
 _NAMING = re.compile(r"\b(?:call me|my name|forget)\b", re.IGNORECASE)
-"""Words to which other modules reply."""
+"""Phrases to which other modules reply."""
 _LEAD = re.compile(
     r"^\W*(?:(?:yes|yeah|yep|no|nope|nah|well|oh|ah|hm+|um+|so|and|but|because|cause|cos|maybe|probably|i think|i guess)\b\W*)+",
     re.IGNORECASE,
 )
-"""Words before an answer that say nothing of their own: *well, because...*."""
+"""Words before an answer that add nothing to it: *well, because...*."""
 
 
 def follow_up_in(
@@ -60,12 +60,12 @@ def follow_up_in(
 
     Args:
         bank: The bank.
-        state: The state of the talk.
+        state: The state of the conversation.
         seen: The analysis of the utterance.
         asking: The sentence of the utterance that asks something; only this sentence counts then.
-        rival: The entry of the open bank that suits best. It beats a follow-up that is doubtful, and less similar, unless
-            the utterance is short: what a short answer means depends on the question.
-        dark: Whether the utterance is sad or grave. Then only follow-ups of dark entries, and nearly equal ones, count.
+        rival: The most suitable entry of the bank. It beats a follow-up that is doubtful and less similar. If the
+            utterance is short, its meaning depends on the agent's question, so only an equal entry beats a follow-up.
+        dark: Whether the utterance is sad or grave. If so, only follow-ups of dark entries and nearly equal ones count.
     """
     best, score = _nearest(bank, state, seen, asking)
     if best is None or score < LEAST or (score < SURE and "farewell" in seen.acts):
@@ -77,9 +77,9 @@ def follow_up_in(
 
 
 def is_answer(bank: Bank, state: State, seen: Analysis, *, dark: bool) -> bool:
-    """Return whether an utterance clearly is a follow-up, and no other module may have an answer.
+    """Return whether an utterance clearly is a follow-up that no other module answers.
 
-    Others may answer questions, orders to stop, and names.
+    Other modules answer questions, orders to stop, and names.
     """
     if seen.question is not None or "stop" in seen.acts or _NAMING.search(seen.text):
         return False
@@ -115,7 +115,7 @@ def rest_of(bank: Bank, state: State, seen: Analysis) -> Moment | None:
 
 
 def _score(bank: Bank, follow_up: Moment, texts: Sequence[str], kind: str | None, seen: Analysis) -> float:
-    """Return the score of a follow-up. `kind`: the kind of answer that the utterance is; None if it can be none."""
+    """Return the score of a follow-up. `kind`: the utterance's kind of answer; None if it cannot be an answer."""
     whole = plain(" ".join(texts))
     denies, units = _denies(whole), set(_UNITS.findall(whole))
     found = [
@@ -133,13 +133,13 @@ def _score(bank: Bank, follow_up: Moment, texts: Sequence[str], kind: str | None
 
 
 def _kind(seen: Analysis) -> str:
-    """Return the kind of answer that an utterance is; empty if it is none."""
+    """Return the utterance's kind of answer (``yes``, ``no``, ``unsure``); empty if it is no answer."""
     answer = seen.yesno
     return "yes" if answer.yes else "no" if answer.no else "unsure" if answer.unsure else ""
 
 
 def _parts(seen: Analysis) -> list[str]:
-    """Return the sentences of an utterance, the whole, and both without the words that lead to an answer."""
+    """Return the sentences of an utterance, the whole utterance, and each of them without introductory words."""
     texts = [*seen.sentences[:4], seen.text]
     return list(dict.fromkeys([*texts, *filter(None, (_LEAD.sub("", text) for text in texts))]))
 

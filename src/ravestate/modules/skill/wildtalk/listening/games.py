@@ -18,7 +18,7 @@ LONGEST = 6
 CHAINED = 2
 """The maximum number of words in the user's turn of word chain: *a tiger*."""
 CHAINING = 6
-"""The same with a verb such as *say*: *then I say tiger*."""
+"""The maximum number of words in such a turn with a verb such as *say*: *then I say tiger*."""
 
 RULES = re.compile(
     r"\brules?\b|\bhow (?:do|does|did|is|to|can|should|am) (?:it|that|this|i|we|one|the game|play)\b.*(?:work|go|play|do|win|\bit\b)"
@@ -32,7 +32,7 @@ THINKING = re.compile(
     r"|difficult|not easy)\b|^\W*h?m+\W*$",
     re.IGNORECASE,
 )
-"""The user still thinks about their turn."""
+"""The user needs more time for their turn."""
 HINT = re.compile(r"\b(?:hint|clue|tip|help me)\b", re.IGNORECASE)
 _MOVING = frozenset(("be", "say", "take", "go", "have", "then", "choose", "pick"))
 """Verbs around a word of word chain: *then I say tiger*."""
@@ -87,7 +87,7 @@ class Turn:
         return game is not None and game.word != "" and game.kind in ("riddle", "holder") and "give" in self._words
 
     def chains(self) -> bool:
-        """Return whether the utterance is no more than a word, in word chain: *a song* may be one."""
+        """Return whether the utterance may be a turn of word chain: *a song* may be a word, and no request to sing."""
         return self._state.game is not None and self._state.game.kind == "chain" and len(self._words) <= CHAINED
 
     def move(self) -> Played | None:
@@ -99,7 +99,7 @@ class Turn:
         if aside is not None:
             return aside
         if game.asides and game.kind in ("riddle", "knock", "play") and not (self.solves() or self._unsure):
-            return None  # the talk has left the game
+            return None  # the user has left the game
         if len(self._words) > LONGEST and game.kind not in ("knock", "holder", "chain") and not self.solves():
             return None
         if not game.word and game.kind != "play" and not (game.kind == "knock" or game.turn == 2):  # "Another one?"
@@ -190,7 +190,7 @@ class Turn:
 
     def _animal(self, game: Game) -> Played | None:
         known, questions = self._shows["animal"]["known"], self._shows["animal"]["questions"]
-        if not game.word:  # the user has named the animal
+        if not game.word:  # the agent has given up, and the user names the animal
             return self._learnt(game)
         if not (self._yes or self._no or self._unsure):
             return None

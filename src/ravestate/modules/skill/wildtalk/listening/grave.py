@@ -1,6 +1,6 @@
-"""Grave remarks: death, violence, and words of people who may harm themselves. Nobody answers them lightly.
+"""Grave remarks: death, violence, and words of people who may harm themselves. The listener does not answer them lightly.
 
-The explicit answers to distress come from another module (`agentqa`). These words only keep the listener from jokes.
+The explicit answers to distress come from another module (`agentqa`).
 """
 
 from __future__ import annotations

@@ -1,7 +1,8 @@
-"""An utterance as the listener sees it: tags for the table of answers, roles for the phrases, and meanings.
+"""An utterance as the listener sees it: tags for the table of answers (order.yaml), roles, and meanings.
 
-A *moment* is a situation in a talk that has phrases of its own, such as good news. A *move* is the next step of a good
-listener, such as to console. A *role* is a placeholder in a phrase. The *tone* of a talk is sad, angry, glad or tired.
+A *moment* is a situation in a conversation that has its own phrases, such as good news. A *move* is the next step of a
+good listener, such as to console. A *role* is a placeholder in a phrase. An *act* is what an utterance does, such as
+thanking. The *tone* of a conversation is sad, angry, glad or tired.
 """
 
 from __future__ import annotations
@@ -36,38 +37,40 @@ from .tongue import is_number, tongue_of
 from .turns import is_leaving, turns_in
 
 SURE, MEANT = 0.85, 0.7
-"""The least confidence that a moment or an act needs to decide the answer."""
+"""The minimum confidences at which a moment and an act decide the answer."""
 EXACT = 0.97
-"""The least confidence at which a moment decides the answer even if it suits no likely move."""
+"""The minimum confidence at which a moment decides the answer even if it suits no likely move."""
 CHANGING = "no_questions"
-"""The moment that changes the talk. No entry of the bank takes its place."""
+"""The moment in which the user wants no more questions. No entry of the bank takes precedence over it."""
 BARE = 3
-"""The maximum number of words of an answer that only says yes or no. Without its question, it resembles nothing."""
+"""The maximum number of words of an answer that only says yes or no. The bank is not searched for such an answer."""
 FINER = 0.1
 """The bonus of a moment over feelings and acts, because a moment is more specific."""
 FELT, GLAD, AMAZED, NEVER = 0.65, 0.8, 0.9, 2.0
-"""The least confidence that a sad feeling, any other feeling, and astonishment need to decide the answer, and one that none has."""
+"""The minimum confidences at which a sad feeling, any other feeling, and astonishment decide the answer. No confidence
+reaches `NEVER`."""
 TURNED = 0.95
-"""The least confidence at which a glad feeling or a moment that is not sad ends a sad tone."""
+"""The minimum confidence at which a glad feeling or a moment that is not sad ends a sad tone."""
 CLOUDED = 0.85
-"""The least confidence at which a sad moment ends a glad tone."""
+"""The minimum confidence at which a sad moment ends a glad tone."""
 ASKED = 0.8
-"""The least confidence at which the agent does what the user requests."""
+"""The minimum confidence in a request at which the agent follows it."""
 FEW = 0.75
-"""The confidence that a short sentence needs."""
+"""The minimum confidence in the act or the feeling of a short sentence."""
 SHORTLY = 7
 """The maximum number of words of a statement that is repeated as a whole."""
 LONG = 12
-"""The least number of words of an utterance that says itself why the user feels so."""
+"""The minimum number of words of an utterance that probably gives the reason for the user's feeling."""
 BRIEFLY = 5
-"""The maximum number of words of a feeling about somebody that has phrases of its own: *my mother is ill*."""
+"""The maximum number of words of a feeling about a relative or a pet, such as *my mother is ill*. Such feelings have
+their own phrases, which take precedence over the bank."""
 ENDINGS = ("stop", "quiet")
 """Acts that count only if their confidence is high."""
 _OFFER = re.compile(r"(?:do you want|would you like|shall i|can i).{0,9} (?:know|hear|see|tell|show)\b", re.IGNORECASE)
-"""The user's offer to tell something."""
+"""The user offers to tell the agent something."""
 _MACHINES = word_set("robot bot machine computer program ai chatbot")
 _UNENDING = word_set("and but or because if the a an my your is 's are 're 'm to")
-"""Closed-class words that cannot end an utterance."""
+"""Function words that cannot end an utterance."""
 _SAD = SORROWS | {"tiredness"}
 _JUDGING = frozenset(("think", "feel", "know"))
 """Verbs of questions such as *what do you think about jazz*."""
@@ -109,7 +112,7 @@ class Hearing:
     tone: str = ""
     """The tone of the utterance; empty if it is unknown."""
     mood: str = ""
-    """The tone of the utterance; in a sad talk, sad, or ``quiet`` if the utterance itself is not sad."""
+    """The tone of the utterance; but ``quiet`` if the conversation is sad, and the utterance is glad, funny or neutral."""
     near: list[Found] = field(default_factory=list[Found])
     """The entries of the bank that resemble the utterance, the most suitable first."""
     follow_up: Moment | None = None
@@ -262,7 +265,7 @@ def _leaves(seen: Analysis) -> bool:
 
 
 def likely(phrases: Material, seen: Analysis) -> tuple[str, ...]:
-    """Return the agent's likeliest next move; if it is not likely enough, also the second likeliest move."""
+    """Return the agent's likeliest next move, and also the second likeliest if the first is not likely enough."""
     move = seen.move
     if move is None:
         return ()
@@ -312,7 +315,7 @@ def _ranked(
     if moment is not None and state.tone == "sad" and light and (not asking or moment.tone == "glad"):
         score = (
             score if score >= TURNED and moment.tone == "glad" and "rejoice" in found.moves else 0.0
-        )  # no light talk in a sad tone
+        )  # no light phrases in a sad conversation
     if moment is not None and state.tone == "glad" and moment.tone == "sad" and score < CLOUDED:
         score = 0.0  # "tears of joy"
     if feeling is not None and feeling.tone == "sad" and light and seen.feelings[feeling.name].score >= TURNED:
@@ -336,15 +339,15 @@ def _ranked(
 
 
 def _fits(moment: Moment, moves: Sequence[str]) -> bool:
-    """Return whether a moment may answer one of the likely moves."""
+    """Return whether a moment has phrases for one of the likely moves."""
     return not moves or not moment.moves or not moment.moves.isdisjoint(moves)
 
 
 def moment_of(phrases: Material, seen: Analysis, heard: Hearing, asking: str = "") -> tuple[Moment | None, str, float]:
     """Return the moment that a sentence resembles most, with the sentence and the confidence.
 
-    A moment counts if it may answer one of the moves, or if the user says one of its examples nearly word for word. If
-    the user asks something, only the question counts.
+    A moment counts if its phrases suit one of the likely moves, or if the user says one of its examples nearly word for
+    word. If the user asks something, only the question counts.
     """
     best, sentence, score = None, "", 0.0
     imagined = any(one.conditional for one in seen.statements)
@@ -387,7 +390,7 @@ def feeling_of(phrases: Material, seen: Analysis, sentence: str, tone: str) -> t
 
 
 def _least(match: Match, tone: str) -> float:
-    """Return the least confidence that a feeling needs to decide the answer."""
+    """Return the minimum confidence at which a feeling decides the answer."""
     few = len(match.text.split()) <= FEW_WORDS
     if match.name == "astonishing":
         return AMAZED if few else NEVER  # a longer utterance says what is astonishing

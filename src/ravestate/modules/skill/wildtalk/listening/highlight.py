@@ -1,8 +1,8 @@
-"""The highlight of an utterance: the phrase that says most, from the agent's view.
+"""The highlight of an utterance: the phrase that carries most information, from the agent's view.
 
-*The wife packed me egg sandwiches again* has the highlight *egg sandwiches*. A listener who repeats it has plainly
-listened, and misses nothing. Each word carries information: the negative logarithm of its frequency in English (its
-self-information). The highlight is the noun phrase, with its prepositions, whose words carry most.
+*The wife packed me egg sandwiches again* has the highlight *egg sandwiches*. A listener who repeats it shows that they
+have listened. The information of a word is the negative logarithm of its frequency in English. The highlight is the
+noun phrase, with its prepositional phrases, whose words have most information.
 """
 
 from __future__ import annotations
@@ -21,22 +21,23 @@ from .echo import DENYING, IMAGINING, echo
 LONGEST = 8
 """The maximum number of words of a highlight."""
 SHORT = 5
-"""The number of letters below which an unknown word counts as a slip."""
+"""An unknown word with fewer letters counts as a slip of the pen."""
 SUBTITLES = 1.6e9
-"""The number of words behind the frequencies of `Lexicon`."""
+"""The number of words in the corpus from which `Lexicon` takes its frequencies."""
 DULL = 7.0
 """The information, in nats, that a word must exceed to count. *Time* and *thing* have less, *sock* has 11."""
 UNKNOWN = 13.5
-"""The most that a word counts, in nats. Names and unknown words may be slips, so they count no more."""
+"""The maximum information of a word, in nats. Unknown words have this value, because they may be slips."""
 LEAST = 2.4
-"""The least information of a highlight, in nats above `DULL`."""
+"""The minimum information of a highlight, in nats above `DULL`."""
 KNOWN_LEAST = 4.0
-"""The same for *the timer* and *my teeth*: such things are mostly mentioned in passing."""
+"""The same for definite phrases, such as *the timer* and *my teeth*, which are mostly mentioned in passing."""
 NUMBER = 3.0
 """The information of a number beside a noun, in nats above `DULL`: *fourteen years*."""
 LATER, SUBJECT, BESIDE, KNOWN = 1.2, 0.55, 0.55, 0.4
-"""Factors: the last words hold the point; a subject is mostly known; a place, a time and a side clause are less than the news; a
-word that was said before is none."""
+"""Factors for the information of a word. `LATER`: it is near the end, where the point often is. `SUBJECT`: it is the
+subject, which is often known. `BESIDE`: it is part of a place, a time or a subordinate clause. `KNOWN`: the user said it
+before."""
 
 _EMPTY = word_set(
     "thing things stuff lot lots bit kind sort way time times day days one ones something anything nothing everything"
@@ -55,7 +56,7 @@ _PLACES = ("GPE", "LOC", "FAC", "EVENT", "PRODUCT", "WORK_OF_ART", "NORP")
 """Kinds of names that may be a highlight."""
 _PRONOUNS = word_set("mine yours his hers ours theirs")
 _DROPPED = word_set("some any such whatever its maybe perhaps probably")
-"""Words that do not stand well at the beginning of an exclamation. *Its* mostly is a typed *it's*."""
+"""Words that sound odd at the beginning of an exclamation. *Its* mostly is a typed *it's*."""
 _PLACING = word_set("in on under behind off onto into over without inside across around through between among outside")
 """Prepositions with which a highlight may begin."""
 _DENYING = DENYING | word_set("without")
@@ -71,9 +72,9 @@ class Highlight:
     text: str
     """The phrase from the agent's view, without a capital: *half your moustache*."""
     information: float
-    """Its information, in nats above that of dull words."""
+    """The information of its words, in nats above `DULL`."""
     start: int
-    """The number of its noun in the utterance."""
+    """The index of its noun in the utterance."""
 
 
 def highlight_in(seen: Analysis, words: Sequence[Word], known: str = "", *, asked: bool = False) -> Highlight | None:
@@ -82,8 +83,8 @@ def highlight_in(seen: Analysis, words: Sequence[Word], known: str = "", *, aske
     Args:
         seen: The analysis of the utterance.
         words: The words of its statements.
-        known: The user's words before; if they come again, they count less.
-        asked: Whether the words are a question, which asserts nothing.
+        known: The user's previous utterance, whose words count less.
+        asked: Whether the words are a question. If so, nouns that the user does not assert count, too.
     """
     lexicon, tree = loaded_lexicon(), seen.tree
     before = set(known.lower().split())
@@ -117,7 +118,7 @@ def _written(lexicon: Lexicon | None, text: str) -> str:
 
 
 def _weight(tree: Tree, noun: Word) -> float:
-    """Return the share of its information that a noun has by its place in the sentence."""
+    """Return the factor for a noun's information, by its place in the sentence."""
     while noun.dep == "conj" and tree.head(noun).pos in ("NOUN", "PROPN"):
         noun = tree.head(noun)
     share = SUBJECT if noun.dep in SUBJECTS and tree.head(noun).lemma != "be" else 1.0
@@ -150,7 +151,7 @@ def _names(tree: Tree, noun: Word, places: set[int]) -> bool:
 
 
 def _is_asserted(tree: Tree, noun: Word) -> bool:
-    """Return whether a noun is no part of a denial or of something imagined."""
+    """Return whether a noun is neither denied nor imagined."""
     if any(word.low == "any" for word in tree.children(noun)):
         return False
     for above in tree.ancestors(noun):
@@ -163,7 +164,7 @@ def _is_asserted(tree: Tree, noun: Word) -> bool:
 
 
 def _phrases(tree: Tree, noun: Word, inside: set[int]) -> Iterator[list[Word]]:
-    """Yield the phrases of a noun: with its own words, then also with the phrases right behind it."""
+    """Yield the phrases of a noun: first with its own words only, then also with the phrases directly after it."""
     left = [word for word in tree.subtree(noun) if word.index < noun.index and _belongs(tree, word, noun)]
     while left and (left[0].low in _DROPPED or left[0].pos in ("CCONJ", "PUNCT", "INTJ")):
         left.pop(0)

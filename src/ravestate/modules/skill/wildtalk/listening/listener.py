@@ -1,7 +1,7 @@
-"""Choose an answer that fits what was said, by the table in order.yaml.
+"""Choose the answer to an utterance, by the table in order.yaml.
 
-The listener takes the first phrase whose placeholders (*roles*) can all be filled, unless it was said lately. Games and
-performances (jokes, songs, stories) come first. `hearing` explains moments, moves and tones.
+The listener takes the first group with a usable phrase: all its placeholders (*roles*) can be filled, and it was not
+said lately. Games and performances (jokes, songs, stories) come first. `hearing` explains moments, moves and tones.
 """
 
 from __future__ import annotations
@@ -32,12 +32,13 @@ from .wishes import Wish, kinds_in, wish_in
 SHOWS = ("joke", "song", "story", "play")
 """The acts that request a performance."""
 BRIEF, BRIEFLY = 12, 12
-"""The maximum length of a sign of listening such as *mhm*, in characters, and the answers until it may come again."""
+"""The maximum length of a sign of listening such as *mhm*, in characters; the number of answers until it may return."""
 STANCES = ("like", "curious", "cool")
 KNOWN = 0.57
-"""The least probability that an entry suits at which other modules leave the answer to it."""
+"""The minimum probability of suiting at which an entry of the bank takes precedence over other modules."""
 PERHAPS = 0.42
-"""The least rough estimate of that probability at which the listener looks closer: 95 % of the known have it."""
+"""The minimum rough estimate of that probability at which the listener computes it exactly. 95 % of the entries that
+reach `KNOWN` also reach this estimate."""
 AWAY = 3
 """The number of answers without an entry of the bank after which its thread is forgotten."""
 
@@ -46,7 +47,7 @@ Groups = Sequence[Sequence[Line]]
 
 @dataclass(frozen=True, slots=True)
 class Answer:
-    """The agent's answer, with the state of the talk after it."""
+    """The agent's answer, with the state of the conversation after it."""
 
     text: str
     state: State
@@ -92,9 +93,10 @@ class Listener:
         load_tones()
 
     def claims(self, heard: Heard, state: State | None = None) -> bool:
-        """Return whether an utterance is a move in the talk that other modules would take for a question or a fact.
+        """Return whether other modules would mistake an utterance for a question or a fact, so that small talk must answer.
 
-        It asks for a performance, repairs the talk, or tells news as a question. Without `state`, this is only a guess.
+        Such an utterance asks for a performance, corrects the agent, or is news or a complaint in the form of a
+        question. Without `state`, this is only a guess.
         """
         seen = heard.seen
         if seen is None or not seen.sentences or is_crisis(seen.normal.text):
@@ -136,7 +138,7 @@ class Listener:
         return short or bool((seen.yesno.yes or seen.yesno.no) and size <= 4 and pending.closed)
 
     def knows(self, seen: Analysis, *, roughly: bool = False) -> bool:
-        """Return whether the bank has a reply that probably suits. With `roughly`, a rule can wait for the result."""
+        """Return whether the bank has a reply that probably suits; with `roughly`, by a fast estimate."""
         if is_crisis(seen.normal.text) or "forget" in plain(seen.text):
             return False
         near = near_in(self._phrases, seen, "", State(), None, roughly=roughly)
@@ -144,7 +146,7 @@ class Listener:
         return bool(near) and near[0].fit >= (PERHAPS if roughly else KNOWN) and not light
 
     def answer(self, heard: Heard, state: State, chance: random.Random) -> Answer:
-        """Return the answer. Takes some 50 ms, most of them for the bank."""
+        """Return the answer. This takes about 50 ms, mostly for the bank."""
         hearing = hear(self._phrases, heard, state)
         own = hearing.asked is not None and "wording" in hearing.tags  # "say that again" starts no other performance
         played = None if own else self._play(heard, state, chance)
@@ -159,7 +161,7 @@ class Listener:
         return replace(said, state=now)
 
     def overhear(self, seen: Analysis, focus: Being | None) -> Overheard:
-        """Return the traces of an utterance: its tone, and the being that it mentions; without a being, `focus`."""
+        """Return the tone of an utterance, and the being that it mentions. A pronoun means the being `focus`."""
         feeling, sentence = feeling_of(self._phrases, seen, "", "")
         tone, lasts = (feeling.tone, feeling.lasts) if feeling is not None else ("", LASTING)
         return Overheard(seen.text, roles_of(seen, sentence, focus, self._phrases).being, tone, lasts)
@@ -191,7 +193,7 @@ class Listener:
     # ---------------------------------------------------------------------------------- phrases
 
     def _mended(self, heard: Heard, state: State, chance: random.Random) -> Answer | None:
-        """Return the answer to a repair: an admission, and an answer to what the user meant; None if there is no repair."""
+        """Return the answer to a correction: an admission, then an answer to what the user meant. None if there is none."""
         repair = None if heard.seen is None else repair_in(heard.seen, state)
         if repair is None:
             return None
@@ -223,7 +225,7 @@ class Listener:
         return found or Answer("Mhm.", state.toned(""))  # all phrases were said lately
 
     def _first(self, hearing: Hearing, state: State, chance: random.Random, *, firm: bool = False) -> Answer | None:
-        """Return the first answer that is left; with `firm`, the first that does not fit nearly everything."""
+        """Return the first usable answer; with `firm`, the first that is specific to the utterance."""
         for source in _with_fewer_questions(self._sources(hearing, state, chance), state):
             roles = hearing.roles
             line = None if firm and source.weak else self._choose(source, roles, state, chance)
@@ -247,14 +249,14 @@ class Listener:
         return None
 
     def _threaded(self, state: State) -> State:
-        """Return the state with the thread of its last answer. Some answers without an entry of the bank end a thread."""
+        """Return the state with the thread of its last answer. After `AWAY` answers from elsewhere, the thread ends."""
         if state.moment in self._phrases.bank.named:
             return replace(state, thread=state.moment, away=0)
         away = state.away + 1
         return replace(state, thread=state.thread if away < AWAY else "", away=away)
 
     def _choose(self, source: _Source, roles: Roles, state: State, chance: random.Random) -> Line | None:
-        """Return a line from the first group with a usable line: its roles are known, and it was not said lately."""
+        """Return a line from the first group with a usable line: all roles are known, and it was not said lately."""
         for lines in source.groups:
             known = [line for line in lines if line.roles <= roles.values.keys()]
             fit = [line for line in known if not _said_lately(line.text, roles.fill(line.text), state)]
@@ -263,7 +265,7 @@ class Listener:
         return None
 
     def _sources(self, hearing: Hearing, state: State, chance: random.Random) -> Iterator[_Source]:
-        """Yield the sources of the rows whose tags fit."""
+        """Yield the sources of the rows of order.yaml whose tags fit."""
         tags, plain = hearing.tags, self._phrases.plain
         for row in self._phrases.order:
             if not (row.needs <= tags and not (row.without & tags)):
@@ -271,7 +273,7 @@ class Listener:
             special = getattr(self, f"_{row.group[1:]}", None) if row.group.startswith("@") else None
             if special is not None:
                 yield from (replace(source, weak=row.weak) for source in special(hearing, state, chance))
-            elif row.group.startswith("@"):  # reactions that the agent's question brought along
+            elif row.group.startswith("@"):  # the reactions that belong to the agent's question
                 then = state.pending.then.get(row.group[1:], ()) if state.pending is not None else ()
                 yield _Source([[Line(text, frozenset()) for text in then if "{" not in text]])
             else:
@@ -293,7 +295,9 @@ class Listener:
                 past = {"past"} & hearing.tags
                 groups += [*(["self"] if mine else []), "future" if statement.plan else "past" if past else "present"]
             found = moment.lines(*groups, "say", "again")
-            if "long" in hearing.tags and moment.name in self._phrases.feelings:  # the user has just said what it is
+            if (
+                "long" in hearing.tags and moment.name in self._phrases.feelings
+            ):  # the user has already said why, so ask nothing
                 yield _Source([[line for line in lines if not line.asks] for lines in found], moment)
             yield _Source(found, moment)
 
@@ -333,7 +337,7 @@ class Listener:
         tags, moves = hearing.tags, self._phrases.replies
         unsure = "ask" if "question" in tags else "tell"
         doubted = hearing.moves[:1] in (("console",), ("mourn",)) and not tags & {"tone", "sorry"}
-        sure = len(hearing.moves) == 1 and not doubted  # nobody is consoled without a sign of sorrow
+        sure = len(hearing.moves) == 1 and not doubted  # console only after a sign of sorrow
         groups = ["asked"] if {"question", "request"} & tags else []
         if hearing.roles.being is not None and "question" not in tags:
             groups.append(hearing.roles.being.kind)
@@ -343,7 +347,7 @@ class Listener:
         yield _Source(moves[unsure].lines(*groups))
 
     def _opinion(self, hearing: Hearing, state: State, chance: random.Random) -> Iterator[_Source]:
-        """Yield the agent's opinion, which is chosen only once per talk. The agent has no opinions about people."""
+        """Yield the agent's opinion, which is chosen once per conversation. The agent does not judge people."""
         roles, stances = hearing.roles, self._phrases.plain["stances"]
         hearing.roles = roles.having(thing=hearing.thing)
         before = state.stances.get(hearing.thing.lower())
@@ -354,13 +358,13 @@ class Listener:
 
 
 def _said_lately(template: str, text: str, state: State) -> bool:
-    """Return whether a phrase was said lately. A sign of listening counts as lately for a shorter time."""
+    """Return whether a phrase was said lately. A sign of listening may return sooner than other phrases."""
     lately = BRIEFLY if len(text) <= BRIEF else len(state.said)
     return text in state.said[-lately:] or (len(text) > BRIEF and template in state.recent)
 
 
 def _with_fewer_questions(sources: Iterator[_Source], state: State) -> Iterator[_Source]:
-    """Yield the sources, but with fewer questions after two in a row, during a game, or if the user wants none."""
+    """Yield the sources with fewer questions: after two questions in a row, during a game, or if the user wants none."""
     asked = len(state.said) > 1 and all(text.endswith("?") for text in state.said[-2:])
     later: list[_Source] = []
     for source in sources:

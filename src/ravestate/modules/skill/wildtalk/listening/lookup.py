@@ -1,4 +1,4 @@
-"""The entries of the bank that suit an utterance, with respect to its mood, its kind of question, and its persons."""
+"""The entries of the bank that suit an utterance: its words, its mood, its kind of question, and its persons."""
 
 from __future__ import annotations
 
@@ -24,21 +24,22 @@ from .tones import DARK, tone_of
 BRIEFLY = 5
 """The maximum number of words of a question that names nothing."""
 ALIKE = 0.47
-"""The least probability that an entry of the bank suits. A reply that takes up what was said is better than a doubtful entry."""
+"""The minimum probability of suiting at which an entry of the bank is used. If no entry reaches it, a reply that takes up
+the user's words is better."""
 WHOLE = 30
 """The maximum number of words of an utterance that is compared with the bank as a whole."""
 LONG, LONGER = 10, 0.75
-"""An utterance of so many words says more than an entry answers, so only this share of the probability is left. Half of the
-replies that the estimate called probable were bad for such utterances, by 170 judgements."""
+"""For utterances of at least `LONG` words, the probability is multiplied by `LONGER`, because they often say more than an
+entry answers. In 170 judgements of such utterances, half of the replies that were called probable were bad."""
 CROSSED = 0.5
 """The share of its probability that an entry loses if its mood, its kind of question or its persons do not suit."""
 DARKLY = 0.5
-"""The least probability with which a sad entry of the bank makes an utterance dark."""
+"""The minimum probability of suiting at which a sad entry of the bank marks an utterance as dark (sad or grave)."""
 LEADING = 0.1
-"""The advantage of an entry with follow-ups: after its reply, the user's next words are understood better."""
+"""The bonus of an entry with follow-ups: after its reply, the agent understands the user's next words better."""
 _THEY = frozenset(("he", "she", "they", "it"))
 BESIDE = 4
-"""The minimum number of words of a sentence beside others that is compared with the bank: *ok*, *well* say too little."""
+"""If an utterance has longer sentences, those with fewer words than this, such as *ok* or *well*, are not compared."""
 
 
 def near_in(
@@ -53,8 +54,9 @@ def near_in(
 ) -> list[Found]:
     """Return the entries of the bank that resemble an utterance or one of its sentences, the most suitable first.
 
-    If the user asks something, only the question counts. Nobody is cheered up in a sad talk. A pronoun may also stand
-    for `being`, which was mentioned before. With `roughly`, the probabilities are estimated without the cross-encoder.
+    If the user asks something, only the question counts. An entry of the opposite mood is less probable. A pronoun may
+    also stand for `being`, which was mentioned before. With `roughly`, the probabilities are estimated without the
+    cross-encoder.
     """
     sentences = seen.sentences[:6]
     longer = [sentence for sentence in sentences if len(sentence.split()) >= BESIDE]

@@ -19,13 +19,13 @@ from .state import LASTING
 
 AGREEING = frozenset(("are", "were", "have", "do"))
 MOMENTS = ("about_the_talk", "advice", "everyday", "grown", "young", "questions", "life", "reactions", "moments")
-"""The files of situations in a talk. Each situation names the moves for which it may answer."""
+"""The files of moments (situations in a conversation). Each moment names the moves that its phrases suit."""
 _NOT_GROUPS = frozenset(("examples", "nouns", "verbs", "tone", "lasts", "heads", "moves", "least", "after"))
 
 
 @dataclass(frozen=True, slots=True)
 class Row:
-    """A row of the table of answers."""
+    """A row of the table of answers (order.yaml)."""
 
     needs: frozenset[str]
     without: frozenset[str]
@@ -35,7 +35,7 @@ class Row:
 
 
 class Material:
-    """All phrases. Made once for all contexts; the matcher learns at its first use."""
+    """All phrases, shared by all contexts. The matchers learn their examples when they are first used."""
 
     def __init__(self) -> None:
         self.feelings = _moments("feelings")
@@ -49,7 +49,7 @@ class Material:
             Matcher({one.name: one.examples for one in moments.values()}, none, least=0.45)
             for moments in files.values()
         ]
-        """One matcher per file. Several small matchers learn faster than one with all examples."""
+        """One matcher per file, because several small matchers learn faster than one large matcher."""
         self.bank: Bank = read_bank()
         self.heads = {name: frozenset[str](words) for name, words in _read("heads").items()}
         self.replies = _moments("replies")
@@ -60,7 +60,7 @@ class Material:
         self.picks: Mapping[str, Sequence[str]] = _read("picks")
         self.plain = {**_moments("plain"), **self.replies}
         self.taking_up = _moments("taking_up")
-        """Frames, questions and remarks that take up a statement."""
+        """Phrases with a gap for the highlight, questions, and remarks that take up a statement."""
         self.order = [_row(row) for row in _read("order")]
         self.shows: Mapping[str, Any] = _read("shows")
         self.tongues = {name: frozenset[str](words) for name, words in _read("tongues").items()}
@@ -125,7 +125,7 @@ def _read(name: str) -> Any:
 
 
 def _plain(node: Any) -> Any:
-    """Return the value of a YAML node; every scalar stays text, also *yes* and *no*."""
+    """Return the value of a YAML node. Every scalar is a text, even *yes* and *no*."""
     if node.id == "mapping":
         return {_plain(key): _plain(value) for key, value in node.value}
     return [_plain(one) for one in node.value] if node.id == "sequence" else node.value

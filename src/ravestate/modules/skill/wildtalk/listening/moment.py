@@ -1,4 +1,4 @@
-"""Phrases of the listening skill, and the situations in a talk that they answer."""
+"""Phrases of the listening skill, and the *moments* (situations in a conversation) that they answer."""
 
 from __future__ import annotations
 
@@ -31,23 +31,23 @@ class Line:
 
 @dataclass(frozen=True, slots=True)
 class Moment:
-    """A situation in a talk, and the phrases for it in groups."""
+    """A situation in a conversation, and the groups of phrases for it."""
 
     name: str
     groups: Mapping[str, tuple[Line, ...]]
     tone: str = ""
     lasts: int = LASTING
-    """The number of turns for which its tone lasts."""
+    """The number of turns for which the tone lasts."""
     examples: tuple[str, ...] = ()
     nouns: frozenset[str] = frozenset()
     verbs: frozenset[str] = frozenset()
     """The nouns and the verbs that are typical of the situation."""
     moves: frozenset[str] = frozenset()
-    """The moves of a listener (language/moves.py) for which its phrases fit."""
+    """The moves of a listener (language/moves.py) that the phrases suit."""
     after: str = ""
-    """A tag that the utterance needs, such as ``shown``: the agent has just told a joke."""
+    """A tag that the utterance must have, such as ``shown``: the agent has just told a joke."""
     least: float = 0.0
-    """The least confidence in a move at which the phrases may be used."""
+    """The minimum confidence in a move at which the phrases may be used."""
     heads: str = ""
     """The name of a list in heads.yaml. The utterance must have a word of this list."""
     follows: tuple[Moment, ...] = ()
@@ -59,7 +59,7 @@ class Moment:
         return self.nouns | self.verbs
 
     def lines(self, *groups: str) -> list[Sequence[Line]]:
-        """Return the groups with these names, without the names that it lacks."""
+        """Return the groups with these names. Names without a group are left out."""
         return [self.groups[name] for name in groups if name in self.groups]
 
 

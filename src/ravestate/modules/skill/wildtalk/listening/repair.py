@@ -1,6 +1,6 @@
-"""Repair: the user corrects or questions the agent's last answer, *no, I meant the bread*, *who are you talking about?*.
+"""Repair: the user corrects or questions the agent's last answer, as in *no, I meant the bread*.
 
-The skill admits its mistake shortly, and answers what the user meant, as if it had been said first.
+The skill briefly admits its mistake, and then answers what the user meant.
 """
 
 from __future__ import annotations
@@ -55,10 +55,11 @@ _CLAUSE = re.compile(
 
 @dataclass(frozen=True, slots=True)
 class Repair:
-    """A user's repair of the talk."""
+    """A correction of the agent's last answer, or a question about it."""
 
     kind: str
-    """``meant``: the user says what they meant; ``puzzled``: they don't understand the answer; ``repeated``; ``why``."""
+    """``meant``: the user says what they meant; ``puzzled``: they don't understand the answer; ``repeated``: they say
+    that the agent repeats itself; ``why``: they only ask why."""
     again: str = ""
     """The words to answer now; empty if the user only complains."""
     thing: str = ""
@@ -66,7 +67,7 @@ class Repair:
 
 
 def repair_in(seen: Analysis, state: State) -> Repair | None:
-    """Return the repair of an utterance; None if it repairs nothing."""
+    """Return the correction or question about the agent's last answer that an utterance contains; None if it has none."""
     if not state.said:
         return None
     parts = [part for one in seen.sentences[:5] for part in _CLAUSES.split(one)]
@@ -97,7 +98,7 @@ def repair_in(seen: Analysis, state: State) -> Repair | None:
 
 
 def may_repair(seen: Analysis) -> bool:
-    """Return whether an utterance repairs the talk if the agent has said something fitting before."""
+    """Return whether an utterance may be a repair. Whether it is one depends on the agent's last answer."""
     return repair_in(seen, State(said=(seen.text,))) is not None
 
 

@@ -16,7 +16,7 @@ from .moment import ROLE
 from .state import Being
 
 LONGEST = 32
-"""The maximum number of characters in a role."""
+"""The maximum number of characters in the value of a role."""
 
 _THEY = {"f": ("she", "her", "her"), "m": ("he", "him", "his")}
 _IT, _PLURAL = ("it", "it", "its"), ("they", "them", "their")
@@ -34,7 +34,7 @@ TURNED = dict(
         strict=True,
     )
 )
-"""Words → the words that the agent says for them."""
+"""Word of the user → the agent's word for it."""
 _REPEATABLE = re.compile(r"[\w' ,.’-]+")
 
 
@@ -52,7 +52,7 @@ class Roles:
         return replace(self, values={**self.values, **{name: value for name, value in values.items() if value}})
 
     def fill(self, text: str) -> str:
-        """Return a phrase with its roles filled. The value of a role that is written with a capital gets a capital."""
+        """Return a phrase with its roles filled. If a role begins with a capital (``{Who}``), so does its value."""
         parts = ROLE.split(text)  # text, role, text, role, ...
         for place in range(1, len(parts), 2):
             role = parts[place]
@@ -101,7 +101,10 @@ def roles_of(seen: Analysis, sentence: str, focus: Being | None, material: Mater
 
 
 def turned(tree: Tree, words: Sequence[Word]) -> str:
-    """Return a noun phrase from the agent's view: *my brother's dog* becomes *your brother's dog*; empty if odd."""
+    """Return a noun phrase from the agent's view: *my brother's dog* becomes *your brother's dog*.
+
+    A phrase that is too long, or has unusual characters, becomes empty.
+    """
     found = ""
     for word in words:
         text = TURNED.get(word.low, word.text)
@@ -110,14 +113,14 @@ def turned(tree: Tree, words: Sequence[Word]) -> str:
 
 
 def has_verb(seen: Analysis) -> bool:
-    """Return whether there is a verb with a subject, or a request."""
+    """Return whether a verb has a subject, apart from asides such as *I think*."""
     tree = seen.tree
     subjects = [word for word in tree.words if word.dep in ("nsubj", "nsubjpass", "expl", "csubj")]
     return any(not _is_aside(tree, tree.head(word)) for word in subjects)
 
 
 def is_request(seen: Analysis) -> bool:
-    """Return whether the user demands something: *prove it*."""
+    """Return whether the utterance is an order: *prove it*."""
     words = [word for word in seen.tree.words if word.pos not in ("PUNCT", "INTJ")]
     first = words[0] if len(words) > 1 or (words and (seen.acts or seen.asks)) else None  # "pumpkin" is no verb
     return first is not None and first.pos == "VERB" and first.dep == "ROOT" and first.tag in ("VB", "VBP")
@@ -129,7 +132,7 @@ def _is_aside(tree: Tree, verb: Word) -> bool:
 
 
 def _statement(seen: Analysis, sentence: str) -> Statement | None:
-    """Return the statement of the sentence that matters most, by default the last sentence."""
+    """Return the most important statement of `sentence`; if it has none, of the whole utterance."""
     told = [one for one in seen.statements if all(isinstance(part, str) for part in (one.triple[0], one.triple[2]))]
     low = (sentence or (seen.sentences[-1] if seen.sentences else "")).lower()
 

@@ -6,7 +6,7 @@ from collections.abc import Mapping
 from dataclasses import dataclass, field, replace
 
 RECENT = 40
-"""The number of latest phrases that are not said again."""
+"""The number of latest phrases that the agent does not repeat."""
 LASTING = 2
 """The number of turns for which a tone lasts."""
 
@@ -45,7 +45,7 @@ class Pending:
 
 @dataclass(frozen=True, slots=True)
 class Overheard:
-    """The traces of an utterance: the being that it mentions, and its tone. The state keeps them even if another module answers."""
+    """The tone of an utterance, and the person or animal that it mentions, kept even if another module answers."""
 
     text: str
     being: Being | None = None
@@ -67,7 +67,10 @@ class Game:
     """The number of the last answers that did not belong to the game."""
 
     def beside(self, answer: str) -> Game | None:
-        """Return the game after an answer that does not belong to it. It ends with the second one, or with a question."""
+        """Return the game after an answer that does not belong to it; None if the game ends.
+
+        A second such answer in a row ends the game, and so does an answer that is a question.
+        """
         return None if self.asides or answer.endswith("?") else replace(self, asides=1)
 
 
@@ -82,13 +85,13 @@ class State:
     before: str = ""
     """The user's previous utterance."""
     ground: str = ""
-    """The last thing that the user told, from the agent's view: the reason for the agent's advice."""
+    """The user's last statement, from the agent's view. The agent names it as the reason for its advice."""
     moment: str = ""
-    """The name of the feeling, or of the *moment* (a situation in a talk), that the last answer was for."""
+    """The name of the feeling, or of the *moment* (a situation in a conversation), that the last answer was for."""
     thread: str = ""
-    """The name of the bank's entry whose reply was said last; empty after some other answers."""
+    """The bank's entry that gave the last reply from the bank; empty after several answers from elsewhere."""
     away: int = 0
-    """The number of answers since an entry of the bank gave one."""
+    """The number of answers since the last reply from the bank."""
     pending: Pending | None = None
     being: Being | None = None
     tone: str = ""
@@ -98,13 +101,14 @@ class State:
     """The agent's opinions. It chooses each opinion once, and then keeps it."""
     game: Game | None = None
     shown: tuple[str, ...] = ()
-    """The jokes, songs, stories and riddles of this talk."""
+    """The jokes, songs, stories and riddles that the agent has performed in this conversation."""
     options: tuple[str, str] | None = None
     """The options that the user named last."""
     show: str = ""
     """The kind of the latest performance."""
     asked: tuple[str, str] | None = None
-    """The kind and the area of the user's last question that was answered by them, for *something else*."""
+    """The kind and the area of the user's last question that was answered by kind and area. If the user then asks for
+    *something else*, the answer has the same kind and area."""
     asks: bool = True
     """Whether the listener may ask questions. False after the user has asked for no more questions."""
 

@@ -1,8 +1,8 @@
 """The probability that the replies of an entry of the bank suit an utterance.
 
-Similar words are not enough. Even if the sentences had a similarity of 0.84 or more, fewer than half of the entries had
-replies that suited the whole utterance. So a cross-encoder reads the entry's sentences and the utterance together, and a
-logistic function weighs its scores. ``tests/quality/suits.py`` learnt the weights from judged replies.
+Similarity is not enough. Even among entries with a similarity of 0.84 or more, fewer than half had replies that suited
+the whole utterance. So a cross-encoder reads each of the entry's sentences together with the utterance. A logistic
+function combines its scores with the similarities. ``tests/quality/suits.py`` fits the weights to judged replies.
 """
 
 from __future__ import annotations
@@ -12,21 +12,22 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 
 WEIGHTS = -9.199, 4.768, 2.046, 5.046, 0.061, 0.081
-"""The constant and the weights of a logistic function (log odds), in the order of `Evidence.features`."""
+"""The constant and the weights of the logistic function, in the order of `Evidence.features`."""
 ROUGH = -13.27, 7.772, 2.13, 6.346
-"""The same without the scores of the cross-encoder."""
+"""The constant and the weights if there are no scores of the cross-encoder."""
 
 
 @dataclass(frozen=True, slots=True)
 class Evidence:
-    """The features of an entry of the bank and an utterance.
+    """The features of an entry of the bank, compared with an utterance.
 
-    Without the cross-encoder's scores, the estimate is rougher, but takes a few milliseconds instead of a tenth of a second.
+    Without the cross-encoder's scores, the estimate is rougher, but takes only a few milliseconds.
 
     Attributes:
-        near: The similarity of the nearest sentences, as `Nearest` gives it: by meaning and by the persons mentioned.
-        meanings: The cosine similarities of the entry's sentences and the whole utterance.
-        scores: The cross-encoder's logits, one for each sentence of the entry; empty if it was not asked.
+        near: The greatest similarity between a sentence of the entry and a sentence of the utterance, as `Nearest`
+            computes it: by meaning and by the persons mentioned.
+        meanings: The cosine similarity of each sentence of the entry to the whole utterance.
+        scores: The cross-encoder's logits, one for each sentence of the entry; empty if the cross-encoder was not used.
     """
 
     near: float
@@ -34,9 +35,9 @@ class Evidence:
     scores: Sequence[float] = ()
 
     def features(self) -> tuple[float, ...]:
-        """Return nearness, second greatest and mean similarity, and, with scores, the greatest and the mean score.
+        """Return `near`, the second greatest and the mean of `meanings`, and the greatest and the mean of `scores`, if any.
 
-        One sentence may be near by chance. If two are near, the utterance belongs to the entry.
+        One sentence may be similar by chance. If two are similar, the utterance probably belongs to the entry.
         """
         size = len(self.meanings)
         rough = self.near, sorted(self.meanings)[-2:][0], sum(self.meanings) / size

@@ -1,4 +1,4 @@
-"""Replies that take up a statement: its highlight, and a remark or a question that suits its tense and its mood."""
+"""Replies that take up a statement: they repeat its highlight, and add a remark or a question in its tense and mood."""
 
 from __future__ import annotations
 
@@ -14,7 +14,7 @@ from .moment import Line, Moment
 from .state import State
 
 OWN = ("once", "not", "might", "plan")
-"""Tenses to which only groups of their own reply."""
+"""Tenses that use only groups with the tense in their name."""
 
 Groups = list[Sequence[Line]]
 
@@ -37,7 +37,7 @@ def taken_from(seen: Analysis, living: frozenset[str], known: str) -> Taken | No
     Args:
         seen: The analysis of the utterance.
         living: The lemmas of nouns for living beings.
-        known: The user's words before; they are no news.
+        known: The user's previous utterance, whose words are no news.
     """
     statements = [one for one in seen.sentences if not one.rstrip().endswith("?") or is_astonished(seen, one)]
     told = sorted(told_in(seen, living), key=lambda one: one.start)
@@ -50,13 +50,13 @@ def taken_from(seen: Analysis, living: frozenset[str], known: str) -> Taken | No
 
 
 ALONE, REMARKED = 0.5, 0.75
-"""The share of highlights that stand alone, and the share with or without a remark; a question follows the others."""
+"""The share of highlights that stand alone, and the share that stand alone or have a remark. The others have a question."""
 QUIETLY = 0.8
-"""The share of remarks among the replies without a highlight: each question would be one of very few."""
+"""The share of remarks among the replies without a highlight. The rest are questions, of which there are very few."""
 TOLD = 5.0
-"""The least information of a highlight between sad utterances. Somebody who is sad needs an ear, and no list of things."""
+"""The minimum information of a highlight in a sad conversation. A sad user needs to be heard, not to hear lists of things."""
 UNREPEATED = 6
-"""The number of answers for which a question or a remark is not said again."""
+"""The number of answers before a question or a remark may be repeated."""
 
 
 def replies(
@@ -68,7 +68,7 @@ def replies(
         taken: The statement and its highlight.
         lines: The authored lines of taking_up.yaml.
         mood: ``sad``, ``angry``, ``glad``, ``funny``, ``tired``, ``quiet``, or empty.
-        state: The state of the talk.
+        state: The state of the conversation.
         chance: The source of random choices.
     """
     names = _names(taken.told, mood)
@@ -100,7 +100,7 @@ def _names(told: Told, mood: str) -> list[str]:
 
 
 def _front(taken: Taken, lines: Mapping[str, Moment], mood: str, state: State, chance: random.Random) -> Line | None:
-    """Return a frame with the highlight; None if there is none, or if it does not suit."""
+    """Return a phrase with a gap for the highlight; None if there is no highlight, or if it does not suit."""
     low = mood == "quiet" and taken.information < TOLD
     if not taken.highlight or low or taken.told.subject == "yours":
         return None
@@ -110,7 +110,7 @@ def _front(taken: Taken, lines: Mapping[str, Moment], mood: str, state: State, c
 
 
 def _framed(groups: Sequence[Sequence[Line]], front: Line, state: State) -> Groups:
-    """Return phrases with the frame before them, without the phrases that ended a recent answer."""
+    """Return phrases with `front` before them. Leave out phrases that ended a recent answer."""
     return [
         [
             replace(line, text=f"{front.text} {line.text}".strip(), roles=line.roles | front.roles)

@@ -1,4 +1,4 @@
-"""Utterances that are not English: other languages and numbers."""
+"""Utterances without English words: other languages, and numbers."""
 
 from __future__ import annotations
 
@@ -10,7 +10,7 @@ _WORD = re.compile(r"[^\W\d_]+")
 
 
 def tongue_of(text: str, tongues: Mapping[str, frozenset[str]]) -> str:
-    """Return the language of a text that is not English, ``?`` for an unknown one; empty for English.
+    """Return the language of a text that is not English; ``?`` for an unknown language; empty for English.
 
     Example:
         >>> tongue_of("ich bin heute müde", {"de": frozenset(("ich", "bin", "heute"))})

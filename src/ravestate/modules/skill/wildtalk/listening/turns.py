@@ -1,4 +1,5 @@
-"""Turns of a talk that their words show: news in the form of a question, a complaint in this form, and a farewell."""
+"""Turns that patterns recognise: news or a complaint in the form of a question, harsh words of users about themselves,
+and a farewell."""
 
 from __future__ import annotations
 
@@ -30,11 +31,11 @@ _REPROACH = re.compile(
     r"|hopeless|fool|foolish|clumsy|rubbish)\b",
     re.IGNORECASE,
 )
-"""Harsh words of the user about themselves."""
+"""Harsh words of users about themselves."""
 
 
 def turns_in(text: str, sentences: Sequence[str]) -> list[str]:
-    """Return ``news``, ``cry`` and ``reproach`` if an utterance with these sentences is such a turn."""
+    """Return the names of the turns that an utterance with these sentences is: ``news``, ``cry`` and ``reproach``."""
     found = {
         "news": bool(sentences) and is_news(sentences[-1]),
         "cry": is_cry(text),

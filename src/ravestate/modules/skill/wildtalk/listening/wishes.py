@@ -1,4 +1,4 @@
-"""The performance that the user asks for: a joke, a song, a story or a game, its subject, and *another one*."""
+"""The performance that the user asks for (a joke, a song, a story or a game), and its subject."""
 
 from __future__ import annotations
 
@@ -18,7 +18,7 @@ LONGEST = 20
 BARE = 4
 """The maximum number of words of a request without a verb: *a dino joke please*."""
 LATELY = 3
-"""The number of last answers, one of which must be a performance, for *another one*."""
+"""*Another one* asks for a performance only if one of this number of latest answers was a performance."""
 
 _HOLDER = re.compile(r"\b(?:think of|pick|choose) (?:an|some|any) animal\b")
 """The user asks the agent to think of an animal, which the user will guess."""
@@ -36,7 +36,7 @@ _OFFERS = re.compile(
     r"|\b(?:is|was|'s|are|were|been)(?: \w+)? an? (?:\w+ )?{noun}|\b(?:the|that|this|those|my|your|his|her|their|our|same"
     r"|no|what a) (?:\w+ )?{noun}|\byou (?:told|said|sang)\b|\byou like {noun}".replace("{noun}", r"(?:joke|stor|song|riddle|tale|pun)")
 )  # fmt: skip
-"""The user tells or offers something of their own, or means a particular one: *I know a joke*, *was that a joke?*."""
+"""The user offers a joke or a story, or speaks about a particular one: *I know a joke*, *was that a joke?*."""
 _ANOTHER = re.compile(
     r"\b(?:another(?: one)?(?! (?!one\b|please\b|pls\b|but\b|about\b|with\b|if\b|then\b|again\b)\w)|(?:one|1) more|(?:a )?new one"
     r"|next one|(?:(?:some|any) )?more of (?:those|them|that)|one (?:about|with|on)|(?:some|any) more|more please|encore)\b"
@@ -73,7 +73,7 @@ class Wish:
     kind: str
     """``joke``, ``song``, ``story``, ``riddle``, ``chain``, ``animal``, ``holder``, ``knock`` or ``play``."""
     thing: str = ""
-    """Its subject, in the user's words: *a green dragon*; of ``play``, a game that the agent does not have."""
+    """The subject, in the user's words: *a green dragon*. For ``play``: the name of a game that the agent does not have."""
     words: tuple[str, ...] = ()
     """The nouns of the subject in their base form."""
 
@@ -84,8 +84,8 @@ def wish_in(shows: Mapping[str, Any], seen: Analysis, state: State, acts: Sequen
     Args:
         shows: The performances, and the words that ask for them.
         seen: The analysis of the utterance.
-        state: The state of the talk, for *another one* and for an offer of the agent's.
-        acts: The performances that the utterance asks for by its acts.
+        state: The state of the conversation, for *another one*, and for an offer of the agent.
+        acts: The performances that the classifier of acts finds in the utterance.
     """
     low = seen.text.lower()
     if _GUESSER.search(low) or _HOLDER.search(low):
@@ -131,7 +131,7 @@ def kinds_in(shows: Mapping[str, Any], text: str) -> list[str]:
 
 
 def fitting(shows: Mapping[str, Any], wish: Wish, listed: Iterable[str]) -> list[str]:
-    """Return the performances about a subject: those with its words, else those with words of its kind."""
+    """Return the performances about a subject: those that name it, or else those with related words."""
     texts, low = list(listed), wish.thing.lower()
     exact = [one for one in texts if any(_has(one, word) for word in wish.words)]
     wider = [kind for kind, words in shows["subjects"].items() if any(_has(low, word) for word in (kind, *words))]
