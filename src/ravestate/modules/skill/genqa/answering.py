@@ -294,6 +294,8 @@ def _can_answer(question: Question, found: Found) -> bool:
     return True
 
 
+_PLAIN = (QuestionWord.OBJECT, QuestionWord.FORM)
+"""The kinds of questions whose answers begin with the subject."""
 _WORLD = re.compile(r"\b(?:in|of) the world\b|\bon earth\b|\bof all\b", re.IGNORECASE)
 
 
@@ -307,7 +309,7 @@ def _is_plain(question: Question, text: str) -> bool:
     ranked = any(word.endswith("est") or word == "most" for group in question.needs for word in group)
     if ranked and not _WORLD.search(asked):
         return _WORLD.search(text) is not None
-    first = re.escape(question.words[0]) if question.words and question.kind is QuestionWord.OBJECT else ""
+    first = re.escape(question.words[0]) if question.words and question.kind in _PLAIN else ""
     return bool(first) and re.match(rf"(?:an? |the )?{first} (?!about\b)", text, re.IGNORECASE) is not None
 
 
