@@ -1,4 +1,4 @@
-"""Even with many rules, an explanation has the exact end of a wait and the exact lead of a rival."""
+"""An explanation has the exact end of a wait and the exact lead of a rival, even if there are many rules."""
 
 from __future__ import annotations
 
