@@ -36,7 +36,7 @@ def test_a_spike_still_too_young_keeps_a_rival_viable(play: Any) -> None:
         sim.emit(j)
         sim.emit(i)
         sim.advance(10.0)
-        assert moments(sim, out) == [(3.0, "specific")]  # three times the patience: no rival was pressed
+        assert moments(sim, out) == [(3.0, "specific")]  # three times the patience: no rival came under pressure
         assert pressed(sim) == []
 
 
@@ -278,7 +278,7 @@ def test_a_rival_whose_patience_ran_out_gives_its_spikes_up(play: Any) -> None:
         assert moments(sim, out) == [(2.0, "fused")]
 
 
-def test_the_patience_of_a_rule_does_not_start_over_when_a_second_rule_presses_it(play: Any) -> None:
+def test_the_patience_of_a_rule_does_not_start_over_when_a_second_rule_waits_for_it(play: Any) -> None:
     m = rs.Module("m")
     point, speech, out = m.signal("point"), m.signal("speech"), output(m)
     writer(m, "fused", point & speech, out)
@@ -391,7 +391,7 @@ def test_a_retired_rule_is_not_a_rival(play: Any) -> None:
         assert moments(sim, out) == [(0.0, "once"), (0.0, "plain")]
 
 
-def test_a_rival_is_pressed_from_the_moment_at_which_it_lost_a_spike(play: Any) -> None:
+def test_a_rival_is_under_pressure_from_the_moment_at_which_it_lost_a_spike(play: Any) -> None:
     m = rs.Module("m")
     i, j, out = m.signal("i"), m.signal("j"), output(m)
     writer(m, "other", m.signal("k"), output(m, "face"))
@@ -440,7 +440,7 @@ def test_a_rival_with_spikes_of_another_group_loses_its_stake_once_this_group_ca
         assert moments(sim, out) == [(3.0, "general")]
 
 
-def test_a_rival_that_also_lacks_an_input_is_pressed(play: Any) -> None:
+def test_a_rival_that_also_lacks_an_input_comes_under_pressure(play: Any) -> None:
     m, i, _, out = mixed(after=3.0)
     with play(m) as sim:
         sim.emit(i)
@@ -449,7 +449,7 @@ def test_a_rival_that_also_lacks_an_input_is_pressed(play: Any) -> None:
 
 
 @pytest.mark.parametrize("comes", [False, True])
-def test_a_rival_that_needs_an_input_through_another_rule_is_pressed(play: Any, comes: bool) -> None:
+def test_a_rival_that_needs_an_input_through_another_rule_comes_under_pressure(play: Any, comes: bool) -> None:
     m = rs.Module("m")
     i, j, x, out = m.signal("i"), m.signal("j"), m.signal("x"), output(m)
     emitter(m, "make", i & j, x)
@@ -555,7 +555,7 @@ def test_a_younger_activation_is_not_under_pressure_while_an_older_one_of_its_ru
     writer(m, "plain", speech, out, cooldown=9.0)
     with play(m) as sim:
         sim.emit(speech)
-        sim.emit(point)  # the first run begins; the point's other activation takes the next speech, and waits
+        sim.emit(point)  # the first run begins; the other activation with this point takes the next speech, and waits
         sim.emit(speech)
         sim.advance(0.3)
         sim.emit(speech)

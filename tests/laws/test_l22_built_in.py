@@ -41,7 +41,7 @@ def test_error_carries_the_rule_and_the_exception(play: Any) -> None:
         assert errors == [rs.RuleFailure("m:fail", oops)]
 
 
-def test_core_has_no_rules_but_the_documented_signals_and_flags() -> None:
+def test_core_has_the_documented_signals_and_flags_and_no_rules() -> None:
     policy = rs.compile()
     assert list(policy.rules) == []
     assert set(policy.slots) == {"core:activity", "core:pressure"}
