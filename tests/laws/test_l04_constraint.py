@@ -82,7 +82,7 @@ def test_an_age_can_come_from_a_setting() -> None:
             assert started(sim) == [(wait, "by_class"), (wait, "by_name")]
 
 
-def test_where_accepts_only_payloads_for_which_it_is_true(play: Any) -> None:
+def test_a_payload_counts_only_if_the_where_predicate_is_true_for_it(play: Any) -> None:
     m, a, _, out = pair(lambda a, b: a.where(lambda n: n > 1).where(lambda n: n < 4))
     with play(m) as sim:
         for number in range(6):
@@ -91,7 +91,7 @@ def test_where_accepts_only_payloads_for_which_it_is_true(play: Any) -> None:
         assert moments(sim, out) == [(3.0, "both"), (4.0, "both")]
 
 
-def test_where_waits_for_a_payload_that_fits(play: Any) -> None:
+def test_a_constraint_with_a_where_predicate_waits_for_a_payload_that_fits(play: Any) -> None:
     m, a, b, out = pair(lambda a, b: a.where(bool) & b)
     with play(m) as sim:
         sim.emit(b)
