@@ -59,7 +59,7 @@ async def test_the_agent_learns_that_the_visitor_is_typing_but_not_at_every_key_
         await page.keyboard.press("Enter")
         await expect(log(page)).to_contain_text(f"You said: {text}")
         told = await log(page).get_by_text("You are writing.").count()
-        assert 1 <= told < len(text) / 4  # the page reports the writing at most once every two seconds
+        assert 1 <= told < len(text) / 4  # the page reports typing at most once every two seconds
 
 
 @on_stage
