@@ -113,7 +113,7 @@ def reader(tmp_path: Path, capsys: pytest.CaptureFixture[str], monkeypatch: pyte
 
 @contextlib.contextmanager
 def speaking(address: str) -> Iterator[threading.Event]:
-    """Ask the same question from the robot's left until the block ends. Set the yielded event after a turn and an answer."""
+    """Ask a question again and again from the robot's left. Yield an event, set when the robot has turned and answered."""
     answered, enough = threading.Event(), threading.Event()
 
     def speak() -> None:

@@ -42,7 +42,7 @@ def ask_again_and_again(file: Path) -> Path:
 
 
 async def point(board: Page, lane: str, words: str) -> None:
-    """Move the pointer along a lane until a tooltip with these words appears. The board may still be drawing its lanes."""
+    """Move the pointer along a lane until a tooltip with these words appears, even if the board still draws its lanes."""
     tip = board.locator(".tip")
     ends = monotonic() + PATIENCE / 1000
     for step in cycle(

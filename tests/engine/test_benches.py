@@ -97,9 +97,9 @@ def test_the_next_counterpart_takes_the_place_of_a_withdrawn_one() -> None:
     assert at_rest(engine)
 
 
-def test_if_the_group_of_a_spike_refuses_the_next_spike_asks_in_the_same_round() -> None:
-    # The first s0 pairs with the first s1. Its group can answer only once, so the group refuses a pair with the third s1. The
-    # second s0 takes the third s1 in the same round of consent.
+def test_the_next_spike_asks_in_the_same_round_if_the_group_of_the_first_spike_refuses() -> None:
+    # The first s0 pairs with the first s1. The group of this s0 can answer only once, so it refuses a pair with the third
+    # s1. The second s0 takes the third s1 in the same round of consent.
     both = RuleOf(when=((Want("s0"), Want("s1")),), writes=("v0",), acts=(Act(seconds=1.0),))
     other = RuleOf(when=((Want("s2"),),), writes=("v1",))
     inputs = tuple((0.0, ("emit", signal, n)) for n, signal in enumerate(("s1", "s1", "s0", "s0", "s1", "s2")))

@@ -532,7 +532,7 @@ class Model:
         return [act.clause.needs[n] for n, s in held if not act.clause.needs[n].detached and s.group.root() is group]
 
     def lose(self, act: Act, needs: Iterable[Any]) -> None:
-        """Give spikes up, and take the oldest spikes that fit instead (L12). If no spike is left, end the activation."""
+        """Give spikes up, and take the oldest spikes that fit instead (L12). Without any spike, end the activation."""
         needs = sorted((need for need in needs if need.index in act.held), key=lambda need: need.index)
         if not needs:
             return

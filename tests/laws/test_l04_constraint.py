@@ -112,7 +112,7 @@ def test_a_predicate_that_raises_is_an_error_of_its_rule_and_does_not_match(play
         assert moments(sim, out) == [(0.0, "both")]
 
 
-def test_after_a_false_predicate_of_until_the_later_ones_are_not_called(play: Any) -> None:
+def test_after_a_false_predicate_in_an_until_condition_no_later_predicate_is_called(play: Any) -> None:
     m = rs.Module("m")
     a, b = m.signal("a"), m.signal("b")
     writer(m, "long", a, output(m), after=1.0, until=b.where(lambda n: n is not None).where(lambda n: n > 0))

@@ -175,7 +175,7 @@ def test_the_group_of_a_detached_spike_is_not_asked(play: Any) -> None:
         assert moments(sim, out) == [(0.0, "look"), (3.0, "busy")]
 
 
-def test_slots_taken_in_one_group_stay_taken_after_it_merges(play: Any) -> None:
+def test_slots_taken_in_one_group_stay_taken_after_the_group_merges(play: Any) -> None:
     m = rs.Module("m")
     i, j, x, out = m.signal("i"), m.signal("j"), m.signal("x"), output(m)
     emitter(m, "fuse", i.min_age(1.0) & j, x)

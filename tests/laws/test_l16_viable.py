@@ -1,4 +1,4 @@
-"""L16: a rival is viable while its missing spikes may still come. No activation waits longer than that."""
+"""L16: a rival is viable while its missing spikes may still come. No activation waits for a rival longer than that."""
 
 import sys
 from typing import Any

@@ -102,7 +102,7 @@ def test_a_descendant_is_withdrawn_even_if_no_activation_holds_the_wiped_cause(p
         assert written(sim, out) == []
 
 
-def test_if_a_cancelled_rule_has_written_nothing_another_rule_can_answer_the_same_input(play: Any) -> None:
+def test_another_rule_can_answer_the_input_if_a_cancelled_rule_has_written_nothing(play: Any) -> None:
     m = rs.Module("m")
     i, x, out, ends = m.signal("i"), m.signal("x"), output(m), list[str]()
     emitter(m, "cause", i, x)

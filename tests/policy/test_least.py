@@ -83,7 +83,7 @@ def test_the_least_pathway_is_found_in_a_chain_of_any_length() -> None:
 
 
 def test_the_least_pathway_is_found_with_two_causes_at_each_step_of_a_chain() -> None:
-    """There are about 2^60 pathways. One more rule has the first cause of each pair, so this cause has less information."""
+    """There are about 2^60 pathways. One more rule has the first cause of each pair, so that cause is worth less."""
     m = rs.Module("m")
     firsts, seconds = signals(m, "a", 60), signals(m, "b", 60)
     for number in range(59):

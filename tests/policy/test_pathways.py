@@ -101,7 +101,7 @@ Pathway = frozenset[str]
 def completions(signal: str, way: Pathway, rules: list[Sketch], inputs: set[str]) -> set[Pathway]:
     """Return the completions of a signal: the signal and, recursively, its causes, once for each way to cause it (L8).
 
-    `way` has the signals between the clause and `signal`. If `way` already has `signal`, there is a cycle, which is cut.
+    `way` has the signals between the clause and `signal`. If `signal` is already in `way`, the cycle is cut.
     """
     if signal in way:
         return {frozenset()}

@@ -22,7 +22,7 @@ class Names:
 
 
 def acts(function: Callable[..., Any], source: Any = inspect.getsource, **options: Any) -> tuple[Acts, list[str]]:
-    """Make a function a rule. Return its acts (reads, writes, ...), and a phrase for each act that it does not declare."""
+    """Make a function a rule. Return its acts (reads, writes, ...), and a phrase for each undeclared act."""
     module = rs.Module("rules", requires=[demo])
     module.rule(when=go, name="work", **options)(function)
     plan = rs.compile(module).rule_plan("rules:work")

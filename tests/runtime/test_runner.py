@@ -285,7 +285,7 @@ async def test_a_rule_that_takes_too_many_arguments_fails_like_any_other() -> No
 
 
 @on_loop
-async def test_if_a_rule_fails_after_a_write_no_other_rule_answers() -> None:
+async def test_no_other_rule_answers_if_a_rule_fails_after_it_has_written() -> None:
     talk = Talk()
 
     async def halfway(ctx: rs.RuleContext) -> None:
@@ -541,7 +541,7 @@ async def test_a_partial_an_object_or_a_method_can_be_a_plain_rule(function: Any
 
 
 @on_loop
-async def test_wiping_its_signal_does_not_end_the_run_of_a_plain_partial() -> None:
+async def test_wiping_the_signal_of_a_plain_partial_does_not_end_its_run() -> None:
     """The engine knows that the rule is a plain function. Its thread cannot be stopped, so the run continues."""
     talk = Talk()
     begun, release = threading.Event(), threading.Event()

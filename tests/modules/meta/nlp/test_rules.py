@@ -171,7 +171,7 @@ def test_a_setting_gives_the_names_of_the_agent() -> None:
             assert sim.read(heard) is expected, text
 
 
-def test_when_one_signal_of_nlp_occurs_all_its_slots_are_already_written() -> None:
+def test_a_rule_on_one_signal_of_nlp_can_read_all_slots_of_nlp() -> None:
     module = rs.Module("reader", requires=[nlp])
     seen: list[Any] = []
 

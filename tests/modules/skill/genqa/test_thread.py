@@ -95,11 +95,11 @@ def test_a_question_of_a_question_word_and_a_pronoun_has_readings(follow: str) -
     assert readings(parse(follow), talk(HUSBAND))
 
 
-def test_after_a_question_about_a_thing_a_pronoun_refers_to_this_thing() -> None:
+def test_a_pronoun_refers_to_the_thing_in_the_question_before() -> None:
     turns = talk(("What is Okapia?", "Okapia is a board game.", "Okapia"))
     assert [reading.about for reading in readings(parse("who invented it?"), turns)] == ["Okapia"]
 
 
-def test_after_a_question_about_an_animal_she_refers_to_this_animal() -> None:
+def test_a_pronoun_refers_to_the_animal_in_the_question_before() -> None:
     turns = talk(("who is bertha", "Bertha is a giant tortoise in Willowbrook Zoo.", "Bertha"))
     assert readings(parse("when did she come to the zoo?"), turns)[0].text == "when did Bertha come to the zoo?"

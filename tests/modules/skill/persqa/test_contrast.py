@@ -95,7 +95,7 @@ def test_a_contrast_that_concerns_no_fact_changes_nothing(text: str) -> None:
     assert after(text) == {}
 
 
-def test_if_two_facts_have_the_wrong_value_only_the_fact_mentioned_last_is_corrected() -> None:
+def test_a_wrong_value_of_two_facts_is_corrected_only_in_the_fact_mentioned_last() -> None:
     both = {"home": ("Leeds",), "birthplace": ("Leeds",)}
     assert after("Hull, not Leeds", both) == {}
     assert after("Hull, not Leeds", both, Talk().mentioning("birthplace", ("Leeds",))) == {"birthplace": ("Hull",)}

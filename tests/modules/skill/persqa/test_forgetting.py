@@ -34,7 +34,7 @@ def test_nothing_of_a_forgotten_person_stays_on_disk(file: Path) -> None:
     assert not any(word in left for word in (b"Zwentibold", b"Quakenbrueck", b"Ermintrude", b"basilisk"))
 
 
-def test_if_the_agent_has_not_recognised_the_user_it_asks_whom_to_forget(file: Path, look: Look) -> None:
+def test_the_agent_asks_whom_to_forget_if_it_has_not_recognised_the_user(file: Path, look: Look) -> None:
     with agent(file) as sim:
         sim.say("my name is ada and i live in hannover")
     with agent(file, confirm=True) as sim:

@@ -38,5 +38,5 @@ def test_a_sentence_that_answers_another_question_is_not_quoted(question: str) -
     assert recollect(question, TOLD) == ""
 
 
-def test_if_the_user_has_said_nothing_nothing_is_quoted() -> None:
+def test_nothing_is_quoted_if_the_user_has_said_nothing() -> None:
     assert recollect("What did I say?", ()) == ""

@@ -227,7 +227,7 @@ def test_the_answers_no_and_nobody_mean_none_and_dont_know_leaves_a_topic_unknow
     assert look() == {"Ada": {}}
 
 
-def test_if_the_user_just_says_yes_the_agent_asks_for_details(file: Path) -> None:
+def test_the_agent_asks_for_details_if_the_user_just_says_yes(file: Path) -> None:
     with agent(file, topics=["hobby"]) as sim:
         assert asked(sim) == "hobby"
         assert meant(answers(sim, "yes"), "which")
@@ -829,7 +829,7 @@ def test_a_known_user_is_recognised_even_if_nothing_can_be_saved(
     assert look() == {"Ada": {"lives_in": ["Ulm"], "works_as": ["baker"]}}
 
 
-def test_if_nlp_fails_persqa_leaves_utterances_to_other_modules(file: Path) -> None:
+def test_persqa_leaves_utterances_to_other_modules_if_nlp_fails(file: Path) -> None:
     with simulate(
         persqa,
         chatter(),
@@ -843,7 +843,7 @@ def test_if_nlp_fails_persqa_leaves_utterances_to_other_modules(file: Path) -> N
 # ------------------------------------------------------------------------------------ users who come and go
 
 
-def test_the_agent_reminds_a_user_whom_the_platform_names_of_what_they_told(file: Path) -> None:
+def test_the_agent_says_what_it_remembers_if_the_platform_gives_the_users_name(file: Path) -> None:
     with agent(file) as sim:
         sim.say("my name is ada and i live in ulm")
     with agent(file) as sim:
@@ -883,7 +883,7 @@ def test_the_user_who_stays_keeps_their_own_facts(file: Path, look: Look) -> Non
     assert look() == {"Ada": {"lives_in": ["Ulm"]}, "Bob": {"lives_in": ["Bremen"]}}
 
 
-def test_a_user_whom_the_platform_names_differently_is_another_person(file: Path, look: Look) -> None:
+def test_the_user_is_another_person_if_the_platform_gives_another_name(file: Path, look: Look) -> None:
     with agent(file) as sim:
         sim.say("my name is ada and i live in ulm")
         sim.put(interloc.users, {"console": "Bob"})

@@ -77,7 +77,7 @@ MEANT = [
 
 
 @pytest.mark.parametrize(("told", "question", "answer"), MEANT, ids=[told for told, _, _ in MEANT])
-def test_a_question_in_other_words_finds_what_was_told(file: Path, told: str, question: str, answer: str) -> None:
+def test_a_question_in_other_words_finds_the_statement(file: Path, told: str, question: str, answer: str) -> None:
     with agent(file, knower()) as sim:
         sim.say("I painted a dragon")
         sim.say(told)
