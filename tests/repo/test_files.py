@@ -48,7 +48,7 @@ REGISTRIES = [
 
 
 def test_no_file_contains_the_name_of_a_package_registry() -> None:
-    """Pins name packages and versions. The installing machine chooses the registry."""
+    """The constraints have names and versions of packages. The machine that installs them chooses the registry."""
     found = lines_matching(re.compile("|".join(REGISTRIES), re.IGNORECASE), kept_files())
     assert not found, "\n".join(found)
 
@@ -67,7 +67,7 @@ def test_the_constraints_file_has_only_names_and_versions() -> None:
     assert [line for line in lines if not pin.fullmatch(line)] == []
 
 
-def test_every_source_file_says_what_it_is() -> None:
+def test_every_source_file_has_a_docstring() -> None:
     silent: list[str] = []
     for file in sorted(SOURCE.rglob("*.py")):
         said = ast.get_docstring(ast.parse(file.read_text(encoding="utf-8"))) or ""

@@ -190,7 +190,7 @@ def test_each_intent_has_three_phrases_and_each_topic_has_one_that_needs_no_extr
         assert min([t.parameters for t in BOOK.templates(f"learned_{topic}")], key=len) <= {topic}
 
 
-# ------------------------------------------------------------------------------------ manners
+# ------------------------------------------------------------------------------------ when the agent asks
 
 
 @pytest.mark.parametrize("text", ["I'd rather not say", "none of your business", "no"])
@@ -556,7 +556,7 @@ def test_a_second_hobby_is_added_and_a_correction_replaces_only_the_last_one(fil
     assert look() == {"Ada": {"has_hobby": ["chess", "ludo"]}}
 
 
-# ------------------------------------------------------------------------------------ who is who
+# ------------------------------------------------------------------------------------ people with similar names
 
 
 def test_the_namesake_with_the_most_facts_is_recognised(file: Path) -> None:
@@ -657,7 +657,7 @@ def test_the_agent_says_that_it_knows_nothing_about_a_new_user(file: Path) -> No
         assert meant(answers(sim, "what do you know about me?"), "recall_nothing")
 
 
-# ------------------------------------------------------------------------------------ to forget
+# ------------------------------------------------------------------------------------ forgetting
 
 
 def test_forget_me_forgets_the_user(file: Path, look: Look) -> None:
@@ -901,7 +901,7 @@ def test_a_platform_can_give_a_user_as_a_node_in_memory(file: Path) -> None:
         assert sim.read(persqa.who) == second
 
 
-# ------------------------------------------------------------------------------------ what it is
+# ------------------------------------------------------------------------------------ the module
 
 
 def test_an_unknown_topic_in_the_settings_is_refused() -> None:
