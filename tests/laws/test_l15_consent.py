@@ -218,7 +218,7 @@ def test_a_recovering_rival_competes_with_its_effective_utility(play: Any) -> No
         assert moments(sim, out) == [(5.0, "specific"), (6.0, "general")]
 
 
-def test_a_rule_that_recovers_while_it_waits_runs_when_it_overtakes(play: Any) -> None:
+def test_a_rule_that_recovers_while_it_waits_runs_when_it_overtakes_its_rival(play: Any) -> None:
     m = rs.Module("m")
     i, x, out = m.signal("i"), m.signal("x"), output(m)
     weight = 2 * (log(4) + log(4 / 3)) / log(4 / 3)  # twice what `specific` is worth

@@ -83,7 +83,7 @@ def classified(after: float, **options: Any) -> tuple[rs.Module, rs.Signal[Any],
 
 
 @pytest.mark.parametrize("after", [0.0, 0.7, 60.0])
-def test_a_rule_waits_for_the_effects_of_a_running_rule_without_patience(play: Any, after: float) -> None:
+def test_a_rule_waits_for_the_effects_of_a_running_rule_however_long_it_runs(play: Any, after: float) -> None:
     m, i, out = classified(after)
     with play(m) as sim:
         sim.emit(i)
@@ -479,7 +479,7 @@ def test_a_rival_whose_slot_is_consumed_is_not_viable(play: Any) -> None:
         assert at_rest(sim)
 
 
-def test_no_rule_waits_for_a_rival_whose_gate_is_closed(play: Any) -> None:
+def test_a_rule_waits_no_longer_than_the_patience_for_a_rival_whose_gate_is_closed(play: Any) -> None:
     m = rs.Module("m")
     i, mood, out = m.signal("i"), m.slot("mood", "calm"), output(m)
     writer(m, "gated", i & mood.holds(lambda value: value == "merry"), out)
@@ -532,7 +532,7 @@ def test_a_rule_waits_for_the_end_of_a_long_chain(play: Any) -> None:
         assert moments(sim, out) == [(3.0, "end")]
 
 
-def test_patience_does_not_start_over_when_a_rival_is_offered_a_spike_that_another_takes(play: Any) -> None:
+def test_patience_does_not_start_over_when_a_rival_is_offered_a_spike_that_another_activation_takes(play: Any) -> None:
     m = rs.Module("m")
     speech, gesture, out = m.signal("speech"), m.signal("gesture"), output(m)
     writer(m, "fuse", speech & gesture, out)
@@ -562,7 +562,7 @@ def test_a_younger_activation_is_not_under_pressure_while_an_older_one_of_its_ru
         sim.emit(speech)  # the limit withdraws the speech of the waiting activation, which takes the next one
         sim.advance(1.1)
         sim.emit(point)
-        assert started(sim)[-1] == (1.4, "fuse")  # the speech that it needs was still live
+        assert started(sim)[-1] == (1.4, "fuse")  # the speech that `fuse` needs was still live
 
 
 def test_a_chain_of_causes_can_be_longer_than_the_recursion_limit(play: Any, monkeypatch: pytest.MonkeyPatch) -> None:

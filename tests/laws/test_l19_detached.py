@@ -1,4 +1,4 @@
-"""L19: a detached constraint only looks, and a detached rule's effects have no parents. Every other loop ends."""
+"""L19: a detached constraint only looks. A detached rule's effects have no parents, so only its loops can be endless."""
 
 from typing import Any
 
