@@ -1,4 +1,4 @@
-"""L19: a detached constraint only looks. The effects of a detached rule have no parents, so its loops can be endless."""
+"""L19: a detached constraint only looks. Effects of a detached rule have no parents, so its loops can be endless."""
 
 from typing import Any
 
