@@ -127,7 +127,7 @@ def test_a_rule_that_runs_for_another_cause_continues(play: Any) -> None:
         assert (ends, written(sim, out)) == (["10"], ["slow"])
 
 
-def test_a_plain_function_cannot_be_interrupted() -> None:
+def test_wiping_does_not_end_the_run_of_a_plain_function() -> None:
     m = rs.Module("m")
     i, out = m.signal("i"), output(m)
 

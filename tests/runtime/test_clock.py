@@ -69,7 +69,7 @@ def test_sleeping_for_nan_seconds_is_refused(scene: Scene) -> None:
     scene.loop.close()
 
 
-def test_the_clock_is_set_forward_only_while_it_is_halted_and_never_back(scene: Scene) -> None:
+def test_the_clock_can_be_set_forward_only_while_it_is_halted_and_never_back(scene: Scene) -> None:
     scene.sleeper("a", 2.0)
     scene.pass_by(0.5)
     scene.clock.set(3.0)
