@@ -61,7 +61,7 @@ def test_a_slot_predicate_can_be_part_of_a_condition() -> None:
     assert (a & holds).parts == (a, holds)
 
 
-def test_and_or_not_and_comparison_are_refused() -> None:
+def test_the_python_operators_and_or_not_and_comparisons_are_refused() -> None:
     with pytest.raises(
         rs.DeclarationError,
         match=rf"condition demo:a \({HERE}:\d+\) .* write & instead of 'and', \| instead of 'or'",
@@ -151,7 +151,7 @@ async def both(value: object) -> AsyncIterator[bool]:
     ],
 )
 def test_a_coroutine_function_or_a_generator_function_is_refused_as_a_predicate(predicate: object) -> None:
-    """A coroutine object, for example, is always true."""
+    """Such a function returns an object, and any object is true."""
     with pytest.raises(
         rs.DeclarationError,
         match=rf"demo:a\.where\(.*\) \({HERE}:\d+\): .* always true: write a plain function of the payload",

@@ -83,7 +83,7 @@ def python_module(**contents: object) -> types.ModuleType:
     return found
 
 
-def test_a_python_module_can_be_used_in_place_of_its_module(demo: rs.Module) -> None:
+def test_a_python_module_can_be_used_in_place_of_the_rs_module_in_it(demo: rs.Module) -> None:
     other = rs.Module("other")
     assert as_module(python_module(module=demo, other=other)) is demo
     assert as_module(python_module(demo=demo, again=demo)) is demo
@@ -212,7 +212,7 @@ def test_a_value_that_is_not_a_number_is_refused(what: str, number: Any, demo: r
     )
 
 
-def test_reads_and_writes_name_slots_and_emits_names_signals(demo: rs.Module) -> None:
+def test_the_arguments_reads_and_writes_take_slots_and_emits_takes_signals(demo: rs.Module) -> None:
     go, mood = demo.signal("go"), demo.slot("mood")
     for what in ("reads", "writes"):
         refused(
@@ -249,7 +249,7 @@ def test_the_message_about_a_misspelt_keyword_names_the_nearest(refusal: str, de
     assert demo.rules == demo.slots == []
 
 
-def test_help_shows_the_arguments_of_a_rule() -> None:
+def test_the_signature_of_the_decorator_rule_shows_its_arguments() -> None:
     assert list(inspect.signature(rs.Module.rule).parameters)[:4] == ["self", "when", "reads", "writes"]
 
 

@@ -20,7 +20,7 @@ def test_names_are_spelt_as_code(name: str, home: str, typed: str) -> None:
     assert spelt(name, home) == typed
 
 
-def test_the_place_of_a_call_is_in_the_designers_file() -> None:
+def test_the_place_of_a_call_is_outside_the_package_ravestate() -> None:
     go = rs.Module("m").signal("go")
     assert place_of_call().startswith(f"{__file__}:")
     with pytest.raises(rs.DeclarationError, match=f"{__file__}:"):

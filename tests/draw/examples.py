@@ -70,7 +70,7 @@ def prompting() -> Module:
 
 
 def many_rules(count: int) -> Module:
-    """Many rules with hubs, chains, conjunctions, alternatives, ages and loops. Each call declares the same rules."""
+    """Declare rules with hubs, chains, conjunctions, alternatives, ages and loops, the same ones at each call."""
     module = Module("many")
     said, answer, memory = module.slot("input"), module.slot("output"), module.slot("memory")
     heard: list[Condition] = [said.changed, memory.changed]
@@ -91,7 +91,7 @@ def many_rules(count: int) -> Module:
 
 
 def star(points: int, pairs: bool) -> Diagram:
-    """A slot that all rules read. All rules write a second slot; with `pairs`, each rule emits its own signal instead."""
+    """Return rules that read one slot and write another. With `pairs`, only the first writes; each emits its own signal."""
     nodes = [Node("in", "slot", "input", "rawio"), Node("out", "slot", "intent", "verbaliser")]
     edges: list[Edge] = []
     for i in range(points):

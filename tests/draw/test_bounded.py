@@ -55,7 +55,7 @@ def test_a_picture_that_is_wide_enough_keeps_its_layers() -> None:
     ranks = network_simplex(40, arcs)
     assert fit_to_screen(ranks, arcs, lambda _: (1000.0, 800.0)) == ranks
     assert fit_to_screen(ranks, arcs, lambda _: (100.0, 700.0)) == ranks  # narrow, but no higher than a screen
-    assert fit_to_screen(ranks, arcs, lambda _: (100.0, 2000.0)) == ranks  # too high, but a bound does not help
+    assert fit_to_screen(ranks, arcs, lambda _: (100.0, 2000.0)) == ranks  # too high, but bounded layers are no lower
 
 
 @pytest.mark.parametrize("points", [20, 30, 60, 120])
@@ -75,7 +75,7 @@ def test_the_examples_are_at_least_as_wide_as_they_are_high(module: Module) -> N
 
 @st.composite
 def tangled_stars(draw: st.DrawFn) -> Diagram:
-    """A hub with neighbours, and a few more edges in any direction. Some of these have labels."""
+    """A hub with neighbours, and a few more edges in any direction, some with a label."""
     diagram = star(draw(st.integers(8, 20)), draw(st.booleans()))
     ids = st.sampled_from([node.id for node in diagram.nodes])
     edges = [

@@ -107,7 +107,7 @@ class Conversation:
         spikes = {record.spike: record for record in self.sim.trace if isinstance(record, Born)}
 
         def source_rule(run: int) -> str:
-            """Return the rule behind an utterance. If the verbaliser said it, this is the rule that asked for it."""
+            """Return the rule behind an utterance. For the verbaliser, this is the rule that asked it to speak."""
             started = runs[run]
             if started.rule == "verbaliser:verbalise":
                 return source_rule(spikes[started.spikes[0]].source)

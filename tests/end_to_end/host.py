@@ -1,4 +1,4 @@
-"""Modules of agents for the browser tests."""
+"""Modules for the agents in the browser tests."""
 
 import asyncio
 

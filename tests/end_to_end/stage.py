@@ -101,7 +101,7 @@ class Stage:
 
     @contextlib.asynccontextmanager
     async def launch(self, *flags: str, windows: bool = True) -> AsyncGenerator[Browser]:
-        """Start Chromium with additional flags. If `windows` is false, use the headless shell if it is installed."""
+        """Start Chromium with additional flags. Without `windows`, prefer the headless shell."""
         names = CHROMIUM if windows else (SHELL, *CHROMIUM)
         found = os.environ.get("CHROMIUM") or next(filter(None, map(shutil.which, names)), None)
         if found is None:
@@ -115,7 +115,7 @@ class Stage:
             await browser.close()
 
     def devices(self, *, sound: str = "", film: Path | None = None) -> contextlib.AbstractAsyncContextManager[Browser]:
-        """Start Chromium with a microphone and a camera that play files. Pages may use both without asking.
+        """Start Chromium with a microphone and a camera that play files. Pages can use both without asking.
 
         Args:
             sound: The recording that the microphone repeats. If the name ends in ``%noloop``, it plays once.

@@ -50,7 +50,7 @@ async def turn_on(page: Page) -> None:
 
 
 @on_stage
-async def test_the_name_that_a_stranger_tells_appears_at_their_face_and_on_the_board(
+async def test_the_name_that_a_stranger_gives_appears_at_their_face_and_on_the_board(
     stage: Stage, video: Path, tmp_path: Path
 ) -> None:
     settings: dict[str, Any] = {

@@ -51,7 +51,7 @@ async def test_a_visitor_talks_with_the_agent(stage: Stage) -> None:
 
 
 @on_stage
-async def test_the_agent_learns_that_the_visitor_is_writing_but_not_at_each_key(stage: Stage) -> None:
+async def test_the_agent_learns_that_the_visitor_is_typing_but_not_at_every_key_press(stage: Stage) -> None:
     async with stage.serve(host, watcher, title="Elske") as served, stage.open(served.address) as page:
         await said(page, "Good evening.")
         text = "It is quiet here, and yet I hear the raven."
@@ -59,7 +59,7 @@ async def test_the_agent_learns_that_the_visitor_is_writing_but_not_at_each_key(
         await page.keyboard.press("Enter")
         await expect(log(page)).to_contain_text(f"You said: {text}")
         told = await log(page).get_by_text("You are writing.").count()
-        assert 1 <= told < len(text) / 4  # the page reports the writing at most once every two seconds
+        assert 1 <= told < len(text) / 4  # the page reports typing at most once every two seconds
 
 
 @on_stage
@@ -158,7 +158,7 @@ async def test_repeatedly_lost_connections_lose_nothing(stage: Stage) -> None:
 
 
 @on_stage
-async def test_if_the_conversation_ended_meanwhile_a_new_conversation_begins(stage: Stage) -> None:
+async def test_a_conversation_that_ended_during_a_lost_connection_is_followed_by_a_new_one(stage: Stage) -> None:
     async with (
         stage.serve(host, title="Elske") as first,
         stage.open(first.address, complaints=True) as page,
@@ -263,7 +263,7 @@ async def test_a_new_conversation_suggests_three_things_to_say(stage: Stage) -> 
 
 
 @on_stage
-async def test_equal_suggestions_and_long_suggestions_are_shown(stage: Stage) -> None:
+async def test_equal_suggestions_and_long_suggestions_are_shown_in_full_on_a_small_screen(stage: Stage) -> None:
     offered = ("Hello!", "Hello!", *("w" * 79 + str(number) for number in range(4)))
     small = {"viewport": {"width": 320, "height": 480}}
     async with (
@@ -317,7 +317,7 @@ async def test_the_status_shows_that_the_server_does_not_respond(stage: Stage) -
 
 
 @on_stage
-async def test_the_page_holds_only_the_lines_near_the_view_of_a_conversation_with_5000_lines(stage: Stage) -> None:
+async def test_in_a_conversation_of_5000_lines_the_page_holds_only_the_lines_near_the_view(stage: Stage) -> None:
     async with stage.serve(host, title="Elske") as served, stage.open(served.address) as page:
         await said(page, "Good evening.")
         (session,) = served.sessions

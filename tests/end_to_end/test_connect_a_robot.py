@@ -99,7 +99,7 @@ def reader(tmp_path: Path, capsys: pytest.CaptureFixture[str], monkeypatch: pyte
     }  # fmt: skip
     for name, value in variables.items():
         monkeypatch.setenv(name, value)
-    # Look often enough to find all nodes on a busy machine. The nodes of the patrol never appear.
+    # Look often enough to find all nodes on a busy machine. The nodes that `patrol.py` names do not run in this test.
     monkeypatch.setattr("ravestate.modules.platform.ros.checking.LOOKS", 12)
     made = Reader(tmp_path, capsys, network.start_master)
     before = set(sys.modules)
@@ -113,7 +113,7 @@ def reader(tmp_path: Path, capsys: pytest.CaptureFixture[str], monkeypatch: pyte
 
 @contextlib.contextmanager
 def speaking(address: str) -> Iterator[threading.Event]:
-    """Repeat a question from the left of the robot. The event that it yields is set when the robot has turned and answered."""
+    """Ask a question again and again from the robot's left. Yield an event, set when the robot has turned and answered."""
     answered, enough = threading.Event(), threading.Event()
 
     def speak() -> None:

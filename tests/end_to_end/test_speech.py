@@ -42,7 +42,7 @@ def ask_again_and_again(file: Path) -> Path:
 
 
 async def point(board: Page, lane: str, words: str) -> None:
-    """Move the pointer along a lane until a tooltip with these words appears. The board may still draw its lanes."""
+    """Move the pointer along a lane until a tooltip with these words appears, even if the board still draws its lanes."""
     tip = board.locator(".tip")
     ends = monotonic() + PATIENCE / 1000
     for step in cycle(
@@ -67,7 +67,7 @@ async def point(board: Page, lane: str, words: str) -> None:
 async def test_a_spoken_question_is_answered_and_the_answer_can_be_interrupted(stage: Stage, tmp_path: Path) -> None:
     settings: dict[str, Any] = {
         "webio": {"port": 0, "title": "Elske"},
-        # Captions would take computing time.
+        # Captions while the user speaks would take computing time.
         "voiceio": {"model": "tiny.en", "voice": "espeak", "captions": 0},
     }
     agent = RecordedAgent(voiceio, guide, webio, settings=settings)

@@ -177,7 +177,7 @@ async def test_after_a_lost_connection_the_microphone_is_still_on(stage: Stage, 
 
 
 @on_stage
-async def test_turning_the_microphone_on_in_a_window_turns_it_off_in_the_other(stage: Stage, tmp_path: Path) -> None:
+async def test_turning_the_microphone_on_in_one_window_turns_it_off_in_the_other(stage: Stage, tmp_path: Path) -> None:
     async with (
         calls(stage, record(tmp_path / "voice.wav")) as browser,
         stage.serve(ears, story, title="Elske") as served,

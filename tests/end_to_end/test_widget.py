@@ -72,7 +72,7 @@ async def test_the_widget_opens_and_closes_the_chat_on_another_site(stage: Stage
 
 
 @on_stage
-async def test_on_another_site_the_agent_learns_that_the_visitor_is_writing(stage: Stage) -> None:
+async def test_on_another_site_the_agent_learns_that_the_visitor_is_typing(stage: Stage) -> None:
     async with (
         Museum().serve() as museum,
         stage.serve(watcher, title="Elske", origins=(museum.origin,)) as served,

@@ -28,7 +28,7 @@ Work = Callable[[], None]
 
 
 def independent_writers(size: int) -> Work:
-    """Make rules that all hear one input. Each writes its own slot."""
+    """Make rules that all react to one input. Each writes its own slot."""
     m = rs.Module("m")
     heard = m.signal("heard")
     for n in range(size):
@@ -42,7 +42,7 @@ def independent_writers(size: int) -> Work:
 
 
 def fallbacks(size: int, *, cooldown: float = 0.0, guarded: bool = False) -> Work:
-    """Make fallbacks that wait for a topic. With `cooldown`, the rule that answers first later recovers."""
+    """Make fallbacks that wait for a topic. With `cooldown`, a rule that has answered must recover."""
     m = rs.Module("m")
     heard, out, calm = m.signal("heard"), m.slot("out", ""), m.flag("calm", default=True)
     declared(m, "topic", when=heard & m.signal("topic"), writes=out)
@@ -76,7 +76,7 @@ def pairs(size: int, rival: str, **options: Any) -> Work:
 
 
 def shared_half(size: int) -> Work:
-    """Make two rules that share their first spikes. All second spikes belong to one of the rules."""
+    """Make two rules that share their first spikes. The second spikes all fit the same rule."""
     m = rs.Module("m")
     a, b, c = m.signal("a", limit=9999), m.signal("b", limit=9999), m.signal("c")
     declared(m, "one", when=a & b)

@@ -1,6 +1,6 @@
 """Benches: if a rule is the only writer of its slot, many of its first spikes share one second spike.
 
-The second spike is called *counterpart*. The rule runs on the same spikes as it would without benches.
+The shared second spike is called the *counterpart*. The rule runs on the same spikes as it would without benches.
 """
 
 from __future__ import annotations
@@ -97,9 +97,9 @@ def test_the_next_counterpart_takes_the_place_of_a_withdrawn_one() -> None:
     assert at_rest(engine)
 
 
-def test_if_the_group_of_a_spike_refuses_the_next_spike_asks_in_the_same_round() -> None:
-    # The first s0 pairs with the first s1. Its group can answer only once, so it refuses a pair with the third s1. The
-    # second s0 takes the third s1 in the same round of consent.
+def test_the_next_spike_asks_in_the_same_round_if_the_group_of_the_first_spike_refuses() -> None:
+    # The first s0 pairs with the first s1. The group of this s0 can answer only once, so it refuses a pair with the third
+    # s1. The second s0 takes the third s1 in the same round of consent.
     both = RuleOf(when=((Want("s0"), Want("s1")),), writes=("v0",), acts=(Act(seconds=1.0),))
     other = RuleOf(when=((Want("s2"),),), writes=("v1",))
     inputs = tuple((0.0, ("emit", signal, n)) for n, signal in enumerate(("s1", "s1", "s0", "s0", "s1", "s2")))
@@ -147,5 +147,5 @@ def test_a_fallback_asks_again_when_a_bench_loses_its_last_counterpart() -> None
     engine.advance(1.0)
     assert not runs(engine, now=1.0, end=False)
     [other] = runs(engine, Finish(run.run, "done"), now=2.0, end=False)
-    assert other.rule.name == "m:fallback"  # the patience of `both` has ended in the meantime, while it was ready
+    assert other.rule.name == "m:fallback"  # the patience of `both` ended at 1 s, while `both` was still ready
     assert payloads([other]) == [(1,)]

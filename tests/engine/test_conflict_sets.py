@@ -77,7 +77,7 @@ def test_an_exception_whose_repr_raises_is_a_failure_like_any_other(trace: bool)
         assert sim.read(out) == "fallback"
 
 
-def test_after_a_rule_resigns_a_rule_of_less_utility_than_its_other_clause_runs(trace: bool) -> None:
+def test_a_rule_of_less_utility_runs_after_a_rule_with_two_clauses_has_resigned(trace: bool) -> None:
     m = rs.Module("m")
     a, b, out = m.signal("a"), m.signal("b"), m.slot("out", "")
 

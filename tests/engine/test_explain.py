@@ -1,4 +1,4 @@
-"""Even with many rules, an explanation has the exact end of a wait and the exact lead of a rival."""
+"""An explanation has the exact end of a wait and the exact lead of a rival, even if there are many rules."""
 
 from __future__ import annotations
 
@@ -20,7 +20,7 @@ def alive(engine: Engine, rule: str) -> ActivationState:
     return activation
 
 
-def test_a_wait_keeps_its_end_when_the_best_rival_resigns() -> None:
+def test_the_end_of_a_wait_does_not_change_when_the_best_rival_resigns() -> None:
     m = rs.Module("m")
     heard, out = m.signal("heard"), m.slot("out", "")
     topics = [m.signal(f"topic{n}") for n in range(4)]
@@ -38,7 +38,7 @@ def test_a_wait_keeps_its_end_when_the_best_rival_resigns() -> None:
         assert waits.until == 1.0
 
 
-def test_the_lead_of_a_rival_is_that_of_its_competing_clause() -> None:
+def test_the_lead_of_a_rival_is_the_lead_of_its_competing_clause() -> None:
     m = rs.Module("m")
     heard, hint, other, out = m.signal("heard"), m.signal("hint"), m.signal("other"), m.slot("out", "")
     declared(m, "two", when=(heard & hint) | other.where(bool).where(callable), writes=out)

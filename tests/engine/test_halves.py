@@ -217,7 +217,7 @@ def test_an_explanation_shows_a_first_spike() -> None:
     assert payloads(runs(engine, Emit("m:b", 2))) == [(1, 2)]
 
 
-def test_activations_without_consent_start_in_batches() -> None:
+def test_activations_that_need_no_consent_start_in_batches() -> None:
     m = rs.Module("m")
     declared(m, "each", when=m.signal("a", limit=1000))
     engine = Engine(rs.compile(m))

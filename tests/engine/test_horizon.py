@@ -1,4 +1,4 @@
-"""The horizon derives a cycle of causes only once, even if many ways lead around it, and its result is correct."""
+"""The horizon is correct, and derives a cycle of causes only once, even if many ways lead around the cycle."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""A line returns its places in sorted order, and not in the order in which they joined."""
+"""A `Line` is a priority queue: it returns its places in sorted order, not in the order in which they joined."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""An engine at rest keeps only its memory. When it has work, it borrows parts from its policy."""
+"""An engine at rest keeps only what it must remember. While it has work, it borrows its other parts from its policy."""
 
 from __future__ import annotations
 
@@ -121,7 +121,7 @@ def test_a_policy_keeps_few_spare_parts() -> None:
 
 def test_spare_parts_keep_nothing_of_an_engine() -> None:
     class Payload:
-        """An object that a test can watch."""
+        """An object to which the test can hold a weak reference."""
 
     policy = rs.compile(m)
     engine = Engine(policy)

@@ -29,8 +29,8 @@ def runs(play: Play) -> list[str]:
     return [line.split("<rule m:")[1].split(">")[0] for line in play.heard if "< Run(" in line]
 
 
-def test_a_spike_that_is_held_is_wiped_even_if_detached_needs_have_forgotten_it() -> None:
-    # L20: wiping withdraws the live spikes. The detached need looks back only 1 s, but r0 holds the spike for longer.
+def test_a_held_spike_is_wiped_even_if_it_is_too_old_for_each_detached_constraint() -> None:
+    # L20: wiping withdraws the live spikes. The detached constraint looks back only 1 s, but r0 holds the spike longer.
     looking = RuleOf(when=((Want("s2"), Want("s0", max_age=1.0, detached=True)),))
     world = World(
         S3,
@@ -41,7 +41,7 @@ def test_a_spike_that_is_held_is_wiped_even_if_detached_needs_have_forgotten_it(
     assert runs(play.play()) == []
 
 
-def test_a_held_spike_counts_against_its_limit_after_detached_needs_have_forgotten_it() -> None:
+def test_a_held_spike_counts_against_the_limit_even_if_it_is_too_old_for_each_detached_constraint() -> None:
     # L23: s0 has at most one live spike, so r0 loses the first s0 when the second s0 is born.
     looking = RuleOf(when=((Want("s2"), Want("s0", max_age=1.0, detached=True)),))
     world = World(
@@ -104,7 +104,7 @@ def test_a_foreground_rule_can_wait_for_the_end_of_activity_and_another_signal()
     Play(world, before=bounded).play()
 
 
-def test_judging_the_best_of_several_rules_against_a_rival_raises_no_error() -> None:
+def test_judging_a_rival_of_several_rules_raises_no_error() -> None:
     # In the past, the judgement changed the members of a group during a loop over them, which raised a RuntimeError.
     world = World(
         S3,
@@ -138,9 +138,9 @@ def test_a_waiting_rule_asks_again_when_its_rival_begins_to_cool_down() -> None:
 
 
 def test_a_waiting_rule_asks_again_when_its_ready_rival_loses_a_spike_of_another_cause() -> None:
-    # L15, L16: r0 waits for r1, which holds s0 and s1; and r1 waits for r2, which writes for s1. When r2 is done, s1 is
-    # consumed, so r1 lacks s1 again. Its patience for s0 began at 0 s, when r1 first lacked s1, and is over. In the
-    # past, r0 did not ask again, because it only belongs to the group of s0. So r0 waited for ever.
+    # L15, L16: r0 waits for r1, which holds s0 and s1; and r1 waits for r2, which also holds s1. When r2 is done, s1 is
+    # consumed, so r1 lacks s1 again. The patience of r1 for s0 began at 0 s, when r1 first lacked s1, and is over. In
+    # the past, r0 did not ask again, because r0 belongs only to the group of s0. So r0 waited for ever.
     def lasting(*signals: str) -> tuple[tuple[Want, ...], ...]:
         return (tuple(Want(signal, max_age=None) for signal in signals),)
 
@@ -184,7 +184,7 @@ def test_a_waiting_rule_asks_again_when_its_rival_takes_a_spike_that_no_other_ca
 def test_a_waiting_rule_asks_again_when_a_rule_is_no_longer_live_for_another_cause() -> None:
     # L16 (iii): r1 lacks v0:false. Rules r0 and r1 might cause it while they are live for another cause. At 3 s, their
     # patience there ends, and r0 runs. From then on, they are live for no other cause. In the past, the engine noticed
-    # only the end of a rule's last activation. Here, the waiting activation was still left.
+    # this only when a rule's last activation ended. Here, the waiting activation had not ended.
     world = World(
         S3,
         (SlotOf("flag"),),
@@ -506,10 +506,11 @@ def test_a_rule_asks_again_when_a_rival_that_another_rival_depends_on_gives_up()
     assert moments(world, "r1") == [0.0]
 
 
-def test_an_activation_that_has_taken_another_spike_asks_when_it_is_its_new_causes_turn() -> None:
+def test_an_activation_that_has_taken_another_spike_asks_at_the_turn_of_its_new_cause() -> None:
     # L12, L15: at 1.25 s, the first activation of r2 runs and writes v0. The second activation loses its spikes,
     # and takes the last s1 of 0 s and the new write. In the past, it kept the turn of its old cause. But the s1 of
-    # 0.75 s comes from s0, which is older than the last s1 of 0 s. So the activation with the s1 of 0.75 s goes first.
+    # 0.75 s was caused by the s0 of 0 s, which came before the last s1 of 0 s. So the activation with the s1 of 0.75 s
+    # goes first.
     world = World(
         S3,
         V1,
@@ -730,8 +731,8 @@ def test_several_rules_can_give_up_a_shared_spike_one_after_another() -> None:
 
 
 def test_activations_that_wait_for_one_rule_to_recover_ask_in_the_same_instant() -> None:
-    # L15: at 3.5 s, r0 has recovered to the weight of r1. Two activations of r0 wait for this moment, but since
-    # different times.
+    # L15: at 3.5 s, r0 has recovered to the weight of r1. Two activations of r0 wait for this moment. They began
+    # to wait at different times.
     ripe = ((Want("s0", min_age=1.0),),)
     again = (Act(((0.0, ("emit", "s0", 2)),)),)
     rules = (

@@ -66,7 +66,7 @@ def test_a_short_example_can_begin_a_sentence_and_a_longer_one_must_be_the_whole
         ("greeting", [], False),
     ],
 )
-def test_only_is_true_if_nothing_but_courtesies_and_a_few_words_surround_an_act(
+def test_an_act_is_the_only_one_if_just_courtesies_and_a_few_words_surround_it(
     act: str, sentences: list[str], alone: bool
 ) -> None:
     assert only(act, sentences) is alone

@@ -25,7 +25,7 @@ def computed(key: object) -> bool:
     return bool(calls)
 
 
-def test_the_files_that_were_not_read_for_longest_are_removed(folder: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+def test_the_file_that_was_read_least_recently_is_removed(folder: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     for age, key in enumerate(("oldest", "older", "old")):
         before = set(folder.glob("*"))
         assert computed(key)

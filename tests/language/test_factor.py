@@ -1,4 +1,4 @@
-"""The factor of a kernel gives the inverse of the kernel, even if the kernel is divided into many blocks."""
+"""`factor` returns F with FᵀF equal to the inverse of a kernel, even if the kernel is divided into many blocks."""
 
 import numpy as np
 import pytest
@@ -7,7 +7,7 @@ from ravestate.language.factor import BLOCK, factor
 
 
 @pytest.mark.parametrize("size", [1, BLOCK, BLOCK + 1, 5 * BLOCK + 3])
-def test_the_product_of_the_factor_with_itself_is_the_inverse(size: int) -> None:
+def test_the_transposed_factor_times_the_factor_is_the_inverse_of_the_kernel(size: int) -> None:
     points = np.random.default_rng(0).standard_normal((size, 8)).astype(np.float32)
     # As in the kernel of a matcher, all similarities are positive, and many examples are almost equal.
     kernel = np.exp(-np.square(points[:, None] - points).sum(axis=2) / 50) + np.float32(0.1)

@@ -62,7 +62,7 @@ def test_environment_variables_of_malloc_take_precedence(monkeypatch: pytest.Mon
 
 
 @pytest.mark.parametrize("error", [OSError, TypeError, AttributeError])
-def test_without_such_a_c_library_the_functions_do_nothing(
+def test_with_another_c_library_the_functions_do_nothing(
     error: type[Exception], monkeypatch: pytest.MonkeyPatch
 ) -> None:
     def refuse(_: Any) -> None:

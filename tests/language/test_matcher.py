@@ -66,7 +66,7 @@ def test_a_matcher_that_is_not_loaded_recognises_only_its_exact_examples() -> No
     assert matcher.match("I like green tea") is None
 
 
-def test_confusions_lists_an_example_that_resembles_another_class() -> None:
+def test_an_example_that_resembles_another_class_is_a_confusion() -> None:
     matcher = Matcher({**EXAMPLES, "late": ["until when are you open", "how long are you open"]}, NONE)
     assert ("until when are you open", "late", "hours") in matcher.confusions()
 

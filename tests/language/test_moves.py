@@ -26,7 +26,7 @@ def _loaded() -> None:
     bundled_moves().load()
 
 
-def test_in_unseen_conversations_half_of_all_moves_and_most_of_the_sure_moves_are_right() -> None:
+def test_in_unseen_conversations_about_half_of_all_moves_and_most_of_the_sure_moves_are_right() -> None:
     rows = [line.split("\t") for line in TALKS.read_text(encoding="utf-8").splitlines() if line[:1] not in ("", "#")]
     found = [(wanted, move_of(text)) for text, wanted in rows if any(map(str.isalpha, text))]
     right = [wanted == move.name for wanted, move in found]
@@ -79,7 +79,7 @@ def test_a_text_without_words_has_no_move() -> None:
     assert bundled_moves().move((), asks=False) is None
 
 
-def test_a_move_means_listening_only_if_it_is_a_listening_move_with_a_high_score() -> None:
+def test_only_a_listening_move_with_a_high_score_counts_as_listening() -> None:
     assert Move("console", 0.8, "interest").listens
     assert not Move("console", 0.5, "interest").listens
     assert not Move("fact", 0.9, "recall").listens

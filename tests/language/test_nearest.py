@@ -1,4 +1,4 @@
-"""`Nearest` finds the examples that are most similar to a sentence."""
+"""`Nearest` finds the examples that a sentence resembles most."""
 
 from __future__ import annotations
 
@@ -26,7 +26,7 @@ def index() -> Nearest:
         ("i seem so tired today", 4),
     ],
 )
-def test_the_nearest_example_has_the_same_meaning_and_the_same_persons(
+def test_the_nearest_example_has_the_same_meaning_and_the_same_grammatical_person(
     index: Nearest, sentence: str, example: int
 ) -> None:
     near = index.nearest([sentence])
@@ -39,7 +39,7 @@ def test_a_sentence_scores_1_for_an_equal_example(index: Nearest) -> None:
     assert index.nearest(["I sold my old bike!"], most=1)[0].score == pytest.approx(1.0, abs=0.01)
 
 
-def test_a_question_is_less_similar_to_a_statement_than_a_statement_is(index: Nearest) -> None:
+def test_a_question_is_less_similar_to_a_statement_than_another_statement_is(index: Nearest) -> None:
     told, asked = index.nearest(["my bike was stolen"], most=1), index.nearest(["my bike was stolen?"], most=1)
     assert asked[0].score < told[0].score
 

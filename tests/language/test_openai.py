@@ -21,7 +21,7 @@ Conversation = Callable[..., list[str]]
 
 @pytest.fixture
 def converse(chat_server: Any) -> Conversation:
-    """A function that asks a server which gives a certain answer, and returns the pieces."""
+    """Return a function that asks a stand-in server for a chosen answer, and returns the pieces of this answer."""
 
     def run(answer: Callable[[Any], Awaitable[None]], *, seen: list[Any] | None = None, **options: Any) -> list[str]:
         async def main() -> list[str]:

@@ -15,7 +15,7 @@ def test_an_entry_that_is_added_again_counts_as_new() -> None:
     assert list(kept.items()) == [("c", 3), ("a", 5), ("d", 4)]
 
 
-def test_of_too_many_new_entries_the_last_are_kept() -> None:
+def test_if_there_are_too_many_new_entries_the_last_ones_are_kept() -> None:
     kept = {"a": 1}
     keep_latest(kept, {"b": 2, "c": 3, "d": 4}, 2)
     assert kept == {"c": 3, "d": 4}

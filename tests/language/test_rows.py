@@ -22,7 +22,7 @@ def test_packed_rows_count_as_vectors_of_length_1_in_products(packed: np.ndarray
     assert products(vectors, rows.unpacked()) == pytest.approx(expected, abs=1e-5)
 
 
-def test_some_returns_the_rows_at_the_given_places(packed: np.ndarray) -> None:
+def test_the_method_some_returns_the_rows_at_given_places(packed: np.ndarray) -> None:
     rows, places = Rows(packed), [BLOCK + 3, 0, BLOCK + 3]
     assert (rows.some(places).unpacked() == rows.unpacked()[places]).all()
     assert len(rows.some([])) == 0

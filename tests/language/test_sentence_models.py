@@ -38,7 +38,7 @@ def test_a_vector_does_not_depend_on_the_batch() -> None:
     np.testing.assert_allclose(together[:3], together[3:6], atol=0.05)
 
 
-def test_the_answer_has_the_highest_score() -> None:
+def test_the_passage_with_the_answer_to_a_question_has_the_highest_score() -> None:
     passages = ["I like Peru.", "The capital of Peru is Lima.", "The capital of Chile is Santiago."]
     scores = Reranker().score("What is the capital of Peru?", passages)
     assert scores.shape == (3,)

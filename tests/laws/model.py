@@ -1,8 +1,10 @@
 """A naive interpreter of the laws, with which ``properties/fuzz.py`` compares the engine.
 
-It keeps lists, has no index, and decides everything again at every moment. It shares the records of the policy
-(utilities, coherence), the events and the effects with the engine, but no other code. It leaves out the
-law about a thousand runs in one instant (L23, fairness), because the compared plays have fewer runs.
+The interpreter keeps lists, has no index, and decides everything again at every moment. It shares the records of the
+policy (utilities, coherence), the events and the effects with the engine, but no other code. It leaves out the law
+about a thousand runs in one instant (L23, fairness), because the compared plays have fewer runs.
+
+In the code, an *act* is an activation, and a *need* is a constraint of a clause.
 """
 
 from __future__ import annotations
@@ -21,7 +23,7 @@ from ravestate.engine.effects import Cancel, Effect, Ended, Failed, Run
 from ravestate.errors import RuleError, RuleTimeout
 
 INSTANT = 0.5e-9
-"""The greatest difference of two times that count as one moment (seconds)."""
+"""Two times that differ by no more than this count as one moment (seconds)."""
 
 BATCH = 100
 """The number of rules that may start without consent before the events of their runs arrive."""
@@ -207,7 +209,7 @@ class Model:
                     written |= act.rule.slotset
                     changed = True
             elif self.consents(act):
-                break  # it reads a slot that a rule of this round may write, so it asks after this write
+                break  # `act` reads a slot that a rule of this round may write, so it asks after this write
         return changed or len(self.acts) < count
 
     def order(self, act: Act) -> Any:
@@ -229,7 +231,7 @@ class Model:
         return all(self.goes_before(theirs, mine))
 
     def goes_before(self, theirs: Any, mine: Any) -> tuple[bool, bool]:
-        """Return whether a clause goes before another one now, and whether it does so in the next moment (L15)."""
+        """Return whether clause `theirs` goes before clause `mine`: now, and in the next moment (L15)."""
         (far, fast), (my_far, my_fast) = self.recovery(theirs.rule), self.recovery(mine.rule)
         weight, my_weight = theirs.rule.weight, mine.rule.weight
         utility, my_utility = theirs.utility * weight, mine.utility * my_weight
@@ -252,7 +254,7 @@ class Model:
         return theirs.index < mine.index
 
     def crossing(self, mine: Any, theirs: Any) -> float:
-        """Return when a clause overtakes another clause that is ahead now, if both continue to recover as now."""
+        """Return when clause `mine` overtakes clause `theirs`, if both continue to recover as now."""
         (far, fast), (their_far, their_fast) = self.recovery(mine.rule), self.recovery(theirs.rule)
         closing = mine.base * fast - theirs.base * their_fast
         if closing <= 0 or theirs.base * their_far <= mine.base * far:
@@ -262,7 +264,7 @@ class Model:
         far = (began - self.ran[mine.rule.index]) * fast if fast else far
         their_far = (began - self.ran[theirs.rule.index]) * their_fast if their_fast else their_far
         turn = began + (theirs.base * their_far - mine.base * far) / closing
-        return round(turn, 9) if round(turn, 9) > self.now else turn  # so that it coincides with others
+        return round(turn, 9) if round(turn, 9) > self.now else turn  # so that equal moments are equal numbers
 
     # ------------------------------------------------------------------------------- consent
 
@@ -272,8 +274,8 @@ class Model:
     def refusals(self, act: Act, without: Iterable[Act] = (), commit: bool = True) -> set[str]:
         """Return why groups refuse consent (L15).
 
-        A slot is ``taken``, or a rival becomes ready, ``surely`` or ``perhaps``. With `commit`, a rival of the last
-        kind is pressed, or gives up (L16). Ignore the work of the activations in `without`.
+        A slot is ``taken``, or a rival becomes ready, ``surely`` or ``perhaps``. With `commit`, a rival that perhaps
+        becomes ready comes under pressure, or gives up (L16). Ignore the work of the activations in `without`.
         """
         reasons: set[str] = set()
         still = frozenset((act, *self.kept_by(act), *without))
@@ -305,7 +307,7 @@ class Model:
         return reasons
 
     def judge_rival(self, rival: Any, group: Group, derivation: Derivation, reasons: set[str], *, commit: bool) -> bool:
-        """Add a rival's reasons for a group to refuse; return whether one of the rival's activations gave up."""
+        """Add the reasons why a group refuses because of a rival; return whether an activation of the rival gave up."""
         sure: list[Act] = []
         ended = False
         for member in [*(a for a in self.acts if a.clause is rival and a.state < RUNS), None]:
@@ -313,7 +315,7 @@ class Model:
                 if member not in self.acts or member in derivation.still:
                     continue
                 if any(set(member.firm()) <= set(older.firm()) for older in sure):
-                    continue  # an older activation that will run holds all spikes of this activation
+                    continue  # an older activation, which will run, holds all spikes of this one
             strength = derivation.rival(rival, member, group)
             if strength == SURE:
                 reasons.add("surely")
@@ -338,7 +340,7 @@ class Model:
     def kept_by(self, act: Act) -> list[Act]:
         """Return the activations that wait, or would wait, for this activation (L16)."""
         clause, slots, groups = act.clause, act.rule.slotset, set(act.groups())
-        behind: dict[Any, bool] = {}  # many activations belong to the same clause
+        behind: dict[Any, bool] = {}  # compute this only once for all activations of a clause
         return [
             other
             for other in self.acts
@@ -354,7 +356,7 @@ class Model:
         ]
 
     def break_stalemate(self) -> bool:
-        """Start the best of the activations that wait for nothing but each other, if there are any."""
+        """If some activations wait only for each other, start the best of them."""
         asking = [act for act in self.acts if act.state == READY and self.asks(act)]
         stuck = [act for act in asking if self.refusals(act, commit=False) == {"surely"}]
         while stuck:
@@ -377,7 +379,7 @@ class Model:
                 for slot in rule.slots:
                     group.taken[slot] = [*(group.taken.get(slot) or ()), act]
         else:
-            self.give_up(act, act.parents)  # L10: at its start
+            self.give_up(act, act.parents)  # L10: already when the run starts
         self.runs += 1
         act.number = self.runs
         self.running[act.number] = act
@@ -471,7 +473,7 @@ class Model:
             return False
 
     def report(self) -> None:
-        """Report once each predicate that has raised an exception, in declaration order (L5)."""
+        """Report each predicate that has raised an exception only once, in declaration order (L5)."""
         for _, rule, predicate, exception in sorted(self.faults, key=lambda fault: fault[0]):
             if id(predicate) not in self.blamed:
                 self.blamed.add(id(predicate))
@@ -490,12 +492,12 @@ class Model:
             return False
 
     def offer(self, need: Any, spike: Spike) -> None:
-        """Offer a spike to every activation that lacks it, oldest first, and then to the stand-by (L12)."""
+        """Offer a spike to every activation that lacks it, oldest first, and then to the stand-by activation (L12)."""
         clause, rule = need.clause, need.clause.rule
         if rule.index in self.retired or not self.fits(need, spike) or spike.withdrawn:
             return
         if need.detached and clause.asks_detached:
-            return  # a detached constraint looks once everything has settled
+            return  # `settle` looks for spikes for this constraint
         for act in list(self.acts):
             able = act.clause is clause and act.state == GATHERS and need.index not in act.held
             if able and self.coheres(act, need, spike):
@@ -530,7 +532,7 @@ class Model:
         return [act.clause.needs[n] for n, s in held if not act.clause.needs[n].detached and s.group.root() is group]
 
     def lose(self, act: Act, needs: Iterable[Any]) -> None:
-        """Give spikes up, and take the oldest spikes that fit instead (L12). Without spikes, end the activation."""
+        """Give spikes up, and take the oldest spikes that fit instead (L12). Without any spike, end the activation."""
         needs = sorted((need for need in needs if need.index in act.held), key=lambda need: need.index)
         if not needs:
             return

@@ -14,7 +14,7 @@ NO, PERHAPS, SURE = 0, 1, 2
 
 
 class Derivation:
-    """Whether missing spikes may still come (L16). The activations in `still` do nothing.
+    """Find out whether missing spikes may still come (L16), if the activations in `still` do nothing.
 
     The signals that may come to a group are a least fixed point: `known` grows until nothing more follows.
     """
@@ -40,7 +40,7 @@ class Derivation:
     def rival(self, clause: Any, act: Act | None, group: Group) -> int:
         """Return how a rival may become ready; `act` is None for the activation that stands by."""
         if act is None and any(self.waits_elsewhere(clause, other, group) for other in self.model.acts):
-            return NO  # in place of this activation, an older one waits for the group's signals
+            return NO  # an older activation of the clause already waits for the group's signals
         return self.solve(clause, act, group)
 
     def waits_elsewhere(self, clause: Any, act: Act, group: Group) -> bool:
@@ -58,7 +58,7 @@ class Derivation:
                 return strength
 
     def comes(self, signal: Any, group: Group, slots: frozenset[int]) -> int:
-        """Return how a signal is in the horizon of a group, as far as is known."""
+        """Return how a signal may come to a group, as far as is known."""
         if self.causes(signal, wide=False).isdisjoint(self.rules(group)):
             return NO  # every chain of causes in the group begins with an activation there
         return self.known.setdefault((signal, group, slots), NO)

@@ -1,6 +1,6 @@
 """A story that uses all features of the engine.
 
-``python -m laws.story`` plays it and prints all effects and trace records."""
+``python -m laws.story`` plays the story, and prints all effects and trace records."""
 
 from __future__ import annotations
 

@@ -82,7 +82,7 @@ def test_an_age_can_come_from_a_setting() -> None:
             assert started(sim) == [(wait, "by_class"), (wait, "by_name")]
 
 
-def test_where_accepts_only_payloads_for_which_it_is_true(play: Any) -> None:
+def test_a_payload_counts_only_if_the_where_predicate_is_true_for_it(play: Any) -> None:
     m, a, _, out = pair(lambda a, b: a.where(lambda n: n > 1).where(lambda n: n < 4))
     with play(m) as sim:
         for number in range(6):
@@ -91,7 +91,7 @@ def test_where_accepts_only_payloads_for_which_it_is_true(play: Any) -> None:
         assert moments(sim, out) == [(3.0, "both"), (4.0, "both")]
 
 
-def test_where_waits_for_a_payload_that_fits(play: Any) -> None:
+def test_a_constraint_with_a_where_predicate_waits_for_a_payload_that_fits(play: Any) -> None:
     m, a, b, out = pair(lambda a, b: a.where(bool) & b)
     with play(m) as sim:
         sim.emit(b)
@@ -112,7 +112,7 @@ def test_a_predicate_that_raises_is_an_error_of_its_rule_and_does_not_match(play
         assert moments(sim, out) == [(0.0, "both")]
 
 
-def test_after_a_false_predicate_of_until_the_later_ones_are_not_called(play: Any) -> None:
+def test_after_a_false_predicate_in_an_until_condition_no_later_predicate_is_called(play: Any) -> None:
     m = rs.Module("m")
     a, b = m.signal("a"), m.signal("b")
     writer(m, "long", a, output(m), after=1.0, until=b.where(lambda n: n is not None).where(lambda n: n > 0))

@@ -50,7 +50,7 @@ def test_a_pathways_utility_is_the_sum_over_its_signals() -> None:
     assert policy.utility("m:a") == pytest.approx(log(4 / 3))
 
 
-def test_a_rule_counts_once_however_many_of_its_pathways_share_the_signal() -> None:
+def test_a_rule_counts_once_even_if_several_of_its_pathways_have_the_signal() -> None:
     m = rs.Module("m")
     i, j, x = m.signal("i"), m.signal("j"), m.signal("x")
     emitter(m, "one", i, x)
@@ -58,7 +58,7 @@ def test_a_rule_counts_once_however_many_of_its_pathways_share_the_signal() -> N
     hearer(m, "hear", x & i | x & j | x, x, [])
     hearer(m, "other", m.signal("z"), x, [])
     policy = rs.compile(m)
-    # all five pathways with x belong to `hear`; i is on pathways of `hear` and `one`, and j on some of `hear` and `two`
+    # x is only on pathways of `hear`, i on pathways of `hear` and `one`, and j on pathways of `hear` and `two`
     assert policy.clauses("m:hear")[2].utility == pytest.approx(log(4 / 1) + log(4 / 2))
 
 
@@ -70,7 +70,7 @@ def test_the_utility_of_a_clause_is_the_least_among_its_pathways() -> None:
     hearer(m, "three", common, common, [])
     hearer(m, "hear", x, x, [])
     policy = rs.compile(m)
-    # rare is on the pathways of 2 of 4 rules, common of 3, x of 1
+    # of the 4 rules, 2 have `rare` on their pathways, 3 have `common`, and 1 has `x`
     assert policy.utility("m:hear") == pytest.approx(log(4) + log(4 / 3))
 
 

@@ -8,7 +8,7 @@ from ravestate.engine.trace import Merged
 
 
 def groups(sim: Any, *signals: rs.Signal[Any]) -> list[int]:
-    """Return the causal group of each signal's last spike at the end of the story."""
+    """Return the causal group to which each signal's last spike belongs now."""
     into = {record.group: record.into for record in sim.trace if isinstance(record, Merged)}
     found: list[int] = []
     for signal in signals:

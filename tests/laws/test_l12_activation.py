@@ -199,7 +199,7 @@ def test_an_activation_that_loses_a_coherent_spike_takes_another_of_the_same_cau
 
 
 @pytest.mark.parametrize("order", ["ab", "ba"])
-def test_spikes_of_groups_that_merge_join(play: Any, order: str) -> None:
+def test_spikes_whose_groups_have_merged_can_join(play: Any, order: str) -> None:
     m = rs.Module("m")
     a, b, s0, s1 = (m.signal(name) for name in ("a", "b", "s0", "s1"))
     emitter(m, "r0", b, s0)

@@ -175,7 +175,7 @@ def test_the_group_of_a_detached_spike_is_not_asked(play: Any) -> None:
         assert moments(sim, out) == [(0.0, "look"), (3.0, "busy")]
 
 
-def test_slots_taken_in_one_group_stay_taken_after_it_merges(play: Any) -> None:
+def test_slots_taken_in_one_group_stay_taken_after_the_group_merges(play: Any) -> None:
     m = rs.Module("m")
     i, j, x, out = m.signal("i"), m.signal("j"), m.signal("x"), output(m)
     emitter(m, "fuse", i.min_age(1.0) & j, x)
@@ -218,7 +218,7 @@ def test_a_recovering_rival_competes_with_its_effective_utility(play: Any) -> No
         assert moments(sim, out) == [(5.0, "specific"), (6.0, "general")]
 
 
-def test_a_rule_that_recovers_while_it_waits_runs_when_it_overtakes(play: Any) -> None:
+def test_a_rule_that_recovers_while_it_waits_runs_when_it_overtakes_its_rival(play: Any) -> None:
     m = rs.Module("m")
     i, x, out = m.signal("i"), m.signal("x"), output(m)
     weight = 2 * (log(4) + log(4 / 3)) / log(4 / 3)  # twice what `specific` is worth

@@ -1,4 +1,4 @@
-"""L16: a rival is viable while its missing spikes may still come. No activation waits longer than that."""
+"""L16: a rival is viable while its missing spikes may still come. No activation waits for a rival longer than that."""
 
 import sys
 from typing import Any
@@ -36,7 +36,7 @@ def test_a_spike_still_too_young_keeps_a_rival_viable(play: Any) -> None:
         sim.emit(j)
         sim.emit(i)
         sim.advance(10.0)
-        assert moments(sim, out) == [(3.0, "specific")]  # three times the patience: no rival was pressed
+        assert moments(sim, out) == [(3.0, "specific")]  # three times the patience: no rival came under pressure
         assert pressed(sim) == []
 
 
@@ -83,7 +83,7 @@ def classified(after: float, **options: Any) -> tuple[rs.Module, rs.Signal[Any],
 
 
 @pytest.mark.parametrize("after", [0.0, 0.7, 60.0])
-def test_a_rule_waits_for_the_effects_of_a_running_rule_without_patience(play: Any, after: float) -> None:
+def test_a_rule_waits_for_the_effects_of_a_running_rule_however_long_it_runs(play: Any, after: float) -> None:
     m, i, out = classified(after)
     with play(m) as sim:
         sim.emit(i)
@@ -278,7 +278,7 @@ def test_a_rival_whose_patience_ran_out_gives_its_spikes_up(play: Any) -> None:
         assert moments(sim, out) == [(2.0, "fused")]
 
 
-def test_the_patience_of_a_rule_does_not_start_over_when_a_second_rule_presses_it(play: Any) -> None:
+def test_the_patience_of_a_rule_does_not_start_over_when_a_second_rule_waits_for_it(play: Any) -> None:
     m = rs.Module("m")
     point, speech, out = m.signal("point"), m.signal("speech"), output(m)
     writer(m, "fused", point & speech, out)
@@ -391,7 +391,7 @@ def test_a_retired_rule_is_not_a_rival(play: Any) -> None:
         assert moments(sim, out) == [(0.0, "once"), (0.0, "plain")]
 
 
-def test_a_rival_is_pressed_from_the_moment_at_which_it_lost_a_spike(play: Any) -> None:
+def test_a_rival_is_under_pressure_from_the_moment_at_which_it_lost_a_spike(play: Any) -> None:
     m = rs.Module("m")
     i, j, out = m.signal("i"), m.signal("j"), output(m)
     writer(m, "other", m.signal("k"), output(m, "face"))
@@ -440,7 +440,7 @@ def test_a_rival_with_spikes_of_another_group_loses_its_stake_once_this_group_ca
         assert moments(sim, out) == [(3.0, "general")]
 
 
-def test_a_rival_that_also_lacks_an_input_is_pressed(play: Any) -> None:
+def test_a_rival_that_also_lacks_an_input_comes_under_pressure(play: Any) -> None:
     m, i, _, out = mixed(after=3.0)
     with play(m) as sim:
         sim.emit(i)
@@ -449,7 +449,7 @@ def test_a_rival_that_also_lacks_an_input_is_pressed(play: Any) -> None:
 
 
 @pytest.mark.parametrize("comes", [False, True])
-def test_a_rival_that_needs_an_input_through_another_rule_is_pressed(play: Any, comes: bool) -> None:
+def test_a_rival_that_needs_an_input_through_another_rule_comes_under_pressure(play: Any, comes: bool) -> None:
     m = rs.Module("m")
     i, j, x, out = m.signal("i"), m.signal("j"), m.signal("x"), output(m)
     emitter(m, "make", i & j, x)
@@ -479,7 +479,7 @@ def test_a_rival_whose_slot_is_consumed_is_not_viable(play: Any) -> None:
         assert at_rest(sim)
 
 
-def test_no_rule_waits_for_a_rival_whose_gate_is_closed(play: Any) -> None:
+def test_a_rule_waits_no_longer_than_the_patience_for_a_rival_whose_gate_is_closed(play: Any) -> None:
     m = rs.Module("m")
     i, mood, out = m.signal("i"), m.slot("mood", "calm"), output(m)
     writer(m, "gated", i & mood.holds(lambda value: value == "merry"), out)
@@ -532,7 +532,7 @@ def test_a_rule_waits_for_the_end_of_a_long_chain(play: Any) -> None:
         assert moments(sim, out) == [(3.0, "end")]
 
 
-def test_patience_does_not_start_over_when_a_rival_is_offered_a_spike_that_another_takes(play: Any) -> None:
+def test_patience_does_not_start_over_when_a_rival_is_offered_a_spike_that_another_activation_takes(play: Any) -> None:
     m = rs.Module("m")
     speech, gesture, out = m.signal("speech"), m.signal("gesture"), output(m)
     writer(m, "fuse", speech & gesture, out)
@@ -555,14 +555,14 @@ def test_a_younger_activation_is_not_under_pressure_while_an_older_one_of_its_ru
     writer(m, "plain", speech, out, cooldown=9.0)
     with play(m) as sim:
         sim.emit(speech)
-        sim.emit(point)  # the first run begins; the point's other activation takes the next speech, and waits
+        sim.emit(point)  # the first run begins; the other activation with this point takes the next speech, and waits
         sim.emit(speech)
         sim.advance(0.3)
         sim.emit(speech)
         sim.emit(speech)  # the limit withdraws the speech of the waiting activation, which takes the next one
         sim.advance(1.1)
         sim.emit(point)
-        assert started(sim)[-1] == (1.4, "fuse")  # the speech that it needs was still live
+        assert started(sim)[-1] == (1.4, "fuse")  # the speech that `fuse` needs was still live
 
 
 def test_a_chain_of_causes_can_be_longer_than_the_recursion_limit(play: Any, monkeypatch: pytest.MonkeyPatch) -> None:

@@ -28,7 +28,7 @@ def two(act: Any, **options: Any) -> tuple[rs.Module, rs.Signal[Any], rs.Slot[st
 # ---------------------------------------------------------------------------------------- done
 
 
-def test_done_consumes_the_slots(play: Any) -> None:
+def test_the_outcome_done_consumes_the_slots(play: Any) -> None:
     async def act(ctx: Any, out: Any) -> None:
         ctx[out] = "act"
 
@@ -42,7 +42,7 @@ def test_done_consumes_the_slots(play: Any) -> None:
         assert errors == []
 
 
-def test_done_consumes_the_slots_even_if_nothing_was_written(play: Any) -> None:
+def test_the_outcome_done_consumes_the_slots_even_if_nothing_was_written(play: Any) -> None:
     async def act(ctx: Any, out: Any) -> None: ...
 
     m, i, out, _ = two(act)
@@ -52,7 +52,7 @@ def test_done_consumes_the_slots_even_if_nothing_was_written(play: Any) -> None:
         assert (written(sim, out), sim.fired) == ([], ["m:act"])
 
 
-def test_done_leaves_the_spikes_for_other_slots(play: Any) -> None:
+def test_the_outcome_done_leaves_the_spikes_for_other_slots(play: Any) -> None:
     m = rs.Module("m")
     i, j, out, face = m.signal("i"), m.signal("j"), output(m), output(m, "face")
     writer(m, "other", m.signal("k"), output(m, "arm"))

@@ -1,4 +1,4 @@
-"""L19: a detached constraint only looks, and a detached rule's effects have no parents. Every other loop ends."""
+"""L19: a detached constraint only looks. Effects of a detached rule have no parents, so its loops can be endless."""
 
 from typing import Any
 
@@ -50,7 +50,7 @@ def test_a_detached_constraint_can_look_at_one_spike_more_than_once(play: Any) -
         assert heard == [0, 1, 2]
         sim.advance(5.0)
         sim.emit(i, 3)
-        assert heard == [0, 1, 2]  # too old to be looked at
+        assert heard == [0, 1, 2]  # now, the spike of j is too old
 
 
 def test_a_detached_constraint_can_look_at_a_consumed_spike(play: Any) -> None:

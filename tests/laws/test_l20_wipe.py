@@ -102,7 +102,7 @@ def test_a_descendant_is_withdrawn_even_if_no_activation_holds_the_wiped_cause(p
         assert written(sim, out) == []
 
 
-def test_if_a_cancelled_rule_has_written_nothing_another_rule_can_answer_the_same_input(play: Any) -> None:
+def test_another_rule_can_answer_the_input_if_a_cancelled_rule_has_written_nothing(play: Any) -> None:
     m = rs.Module("m")
     i, x, out, ends = m.signal("i"), m.signal("x"), output(m), list[str]()
     emitter(m, "cause", i, x)
@@ -127,7 +127,7 @@ def test_a_rule_that_runs_for_another_cause_continues(play: Any) -> None:
         assert (ends, written(sim, out)) == (["10"], ["slow"])
 
 
-def test_a_plain_function_cannot_be_interrupted() -> None:
+def test_wiping_does_not_end_the_run_of_a_plain_function() -> None:
     m = rs.Module("m")
     i, out = m.signal("i"), output(m)
 

@@ -41,7 +41,7 @@ def test_error_carries_the_rule_and_the_exception(play: Any) -> None:
         assert errors == [rs.RuleFailure("m:fail", oops)]
 
 
-def test_core_has_no_rules_but_the_documented_signals_and_flags() -> None:
+def test_core_has_the_documented_signals_and_flags_and_no_rules() -> None:
     policy = rs.compile()
     assert list(policy.rules) == []
     assert set(policy.slots) == {"core:activity", "core:pressure"}
@@ -52,7 +52,7 @@ def test_core_has_no_rules_but_the_documented_signals_and_flags() -> None:
     assert isinstance(rs.pressure, rs.Flag)
 
 
-def test_activity_holds_while_an_activation_holds_a_spike(play: Any) -> None:
+def test_activity_is_true_while_an_activation_holds_a_spike(play: Any) -> None:
     m = rs.Module("m")
     i, j = m.signal("i"), m.signal("j")
     hearer(m, "wait", i & j, i, [])
@@ -68,7 +68,7 @@ def test_activity_holds_while_an_activation_holds_a_spike(play: Any) -> None:
         assert moments(sim, rs.activity) == [(1.0, True), (6.0, False)]
 
 
-def test_activity_holds_while_a_rule_runs(play: Any) -> None:
+def test_activity_is_true_while_a_rule_runs(play: Any) -> None:
     m = rs.Module("m")
     i, out = m.signal("i"), output(m)
     writer(m, "slow", i, out, after=7.0)
@@ -90,7 +90,7 @@ def test_background_rules_do_not_count_as_activity(play: Any) -> None:
         assert moments(sim, rs.activity) == []
 
 
-def test_pressure_holds_while_an_activation_is_kept_waiting(play: Any) -> None:
+def test_pressure_is_true_while_an_activation_is_kept_waiting(play: Any) -> None:
     m = rs.Module("m")
     i, x, out = m.signal("i"), m.signal("x"), output(m)
     emitter(m, "classify", i, x, after=2.0)
@@ -134,7 +134,7 @@ def test_a_bored_signal_can_be_built_from_activity(play: Any) -> None:
         sim.advance(4.0)
         sim.emit(i)
         sim.advance(20.0)
-        assert heard[0] == 9.0  # five seconds of silence after the last word
+        assert heard[0] == 9.0  # five seconds without activity after the last input
 
 
 def test_an_impatient_signal_can_be_built_from_pressure(play: Any) -> None:

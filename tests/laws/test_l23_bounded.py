@@ -157,7 +157,7 @@ def test_an_endless_loop_does_not_keep_other_rules_from_running(play: Any, stage
         assert 1_000 <= turns.total() <= 1_010
 
 
-def test_an_endless_loop_does_not_keep_a_rule_on_pressure_from_running(play: Any) -> None:
+def test_an_endless_loop_does_not_keep_a_rule_that_waits_for_pressure_from_running(play: Any) -> None:
     m = rs.Module("m")
     a, b, out, heard = m.signal("a"), m.signal("b"), output(m), list[Any]()
     turns = endless(m, a, until=lambda: bool(heard))
@@ -183,7 +183,7 @@ def test_two_loops_take_turns(play: Any) -> None:
         assert abs(one.total() - other.total()) < 10
 
 
-def test_an_endless_loop_that_happens_twice_is_reported_by_one_error(play: Any) -> None:
+def test_an_endless_loop_that_occurs_twice_is_reported_only_once(play: Any) -> None:
     m = rs.Module("m")
     a, b, errors = m.signal("a"), m.signal("b"), list[Any]()
     turns = endless(m, a, b, until=lambda: turns.total() % 3_000 == 0)

@@ -24,7 +24,7 @@ TESTS = Path(__file__).parents[1]
 
 
 def redo(engine: Engine, log: list[tuple[str, Any, float]]) -> None:
-    """Repeat the calls of one engine on another."""
+    """Repeat on an engine the calls that another engine has logged."""
     for verb, event, moment in log:
         if verb == "receive":
             engine.receive(event, moment)
@@ -102,7 +102,7 @@ def test_the_engine_uses_no_clock_and_no_random_numbers(monkeypatch: pytest.Monk
 
 
 def state(engine: Engine) -> dict[str, Any]:
-    """Return a snapshot without the next deadline: an early call is harmless, and stale deadlines may stay a while."""
+    """Return a snapshot without the next deadline. It may be too early, which is harmless."""
     return {**snapshot(engine), "next_deadline": None}
 
 

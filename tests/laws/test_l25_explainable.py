@@ -263,7 +263,7 @@ def test_births_holdings_and_outcomes_are_traced_with_their_causes(play: Any) ->
 def test_the_reason_to_wait_is_traced_again_when_it_changes(play: Any) -> None:
     """The patience of `better` ends at 1 s, and that of `best` at 2 s.
 
-    `second` and `third` always also wait for the rivals of `first`.
+    `second` and `third` wait for `first`, and for the rivals that `first` waits for.
     """
     m = rs.Module("m")
     speech, topic, x, y = (m.signal(name) for name in ("speech", "topic", "x", "y"))
@@ -289,7 +289,9 @@ def test_a_wait_with_the_same_reason_is_traced_only_once(play: Any) -> None:
     m = rs.Module("m")
     go, out = m.signal("go"), output(m)
     writer(m, "first", go, out, after=3.0, weight=2.0)
-    writer(m, "beside", go, output(m, "face"), after=1.0)  # its end makes the group's waiting activations ask again
+    writer(
+        m, "beside", go, output(m, "face"), after=1.0
+    )  # when this rule ends, the waiting activations of the group ask again
     writer(m, "second", go, out)
     with play(m) as sim:
         sim.emit(go)

@@ -53,7 +53,7 @@ def test_ancestors_stop_at_detached_rules_and_detached_constraints() -> None:
     assert names(policy, causes.ancestors(y)) == []
     assert names(policy, causes.ancestors(z)) == ["aside"]
     assert names(policy, causes.ancestors(out)) == ["third", "aside", "fourth"]
-    assert causes.ancestors(out) is causes.ancestors(out)  # computed once
+    assert causes.ancestors(out) is causes.ancestors(out)  # the set is computed only once
 
 
 def test_wide_ancestors_include_detached_effects() -> None:
@@ -72,7 +72,7 @@ def test_wide_ancestors_stop_at_inputs() -> None:
     assert names(policy, policy.causes.wide_ancestors(policy.signal_of["m:y"].index)) == ["second"]
 
 
-def test_downstream_has_the_clauses_that_a_rule_can_help_to_write_best_first() -> None:
+def test_downstream_clauses_are_those_that_a_rule_can_help_to_write_in_order_of_utility() -> None:
     m = rs.Module("m")
     entry, x, y = (m.signal(name) for name in ("entry", "x", "y"))
     out = m.slot("out")
@@ -89,7 +89,7 @@ def test_downstream_has_the_clauses_that_a_rule_can_help_to_write_best_first() -
     assert downstream(policy.rule_plan("m:plain")) == ()
 
 
-def test_grounded_has_the_signals_that_can_follow_from_given_signals() -> None:
+def test_the_signals_that_can_follow_from_given_signals_are_grounded() -> None:
     policy, causes = chain()
     entry, x, y, z, out = signals(policy, "entry", "x", "y", "z", "out:changed")
     assert causes.grounded([entry]) >= {entry, x, y, z, out}
@@ -97,7 +97,7 @@ def test_grounded_has_the_signals_that_can_follow_from_given_signals() -> None:
     assert causes.grounded([]) == frozenset()
 
 
-def test_grounded_has_an_effect_only_if_a_whole_clause_is_met() -> None:
+def test_an_effect_is_grounded_only_if_all_signals_of_a_clause_are() -> None:
     m = rs.Module("m")
     a, b, c = (m.signal(name) for name in "abc")
     rule(m, "both", a & b, emits=c)

@@ -67,7 +67,7 @@ def test_a_rule_that_waits_for_an_earlier_writer_of_its_slot_is_unreachable(scen
 
 
 @pytest.mark.parametrize("way", ["constraint", "rule"])
-def test_a_detached_constraint_or_cause_makes_such_a_rule_reachable(scene: Scene, way: str) -> None:
+def test_a_detached_constraint_or_cause_makes_a_rule_after_another_writer_reachable(scene: Scene, way: str) -> None:
     said = scene.module.signal("said")
     scene.rule("say", scene.heard, writes=scene.out, emits=said, detached=way == "rule")
     scene.rule("again", said.detached() if way == "constraint" else said, writes=scene.out)

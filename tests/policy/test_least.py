@@ -47,7 +47,7 @@ def test_the_least_pathway_is_found_in_a_ring_of_any_length(count: int) -> None:
     for number in range(count):
         m.rule(when=ring[number], emits=ring[(number + 1) % count], name=f"r{number}")(nothing)
     policy = rs.compile(m)
-    # All rules except one have the whole ring on their pathways, and all rules have the entry.
+    # Each signal of the ring is on pathways of all rules except one. The entry is on pathways of all rules.
     each = log((count + 1) / count)
     for number in (0, count // 2, count - 1):
         (clause,) = policy.clauses(f"m:r{number}")
@@ -83,7 +83,7 @@ def test_the_least_pathway_is_found_in_a_chain_of_any_length() -> None:
 
 
 def test_the_least_pathway_is_found_with_two_causes_at_each_step_of_a_chain() -> None:
-    """There are about 2^60 pathways. The first cause of each pair is on one more rule, so it has less information."""
+    """There are about 2^60 pathways. One more rule has the first cause of each pair, so that cause is worth less."""
     m = rs.Module("m")
     firsts, seconds = signals(m, "a", 60), signals(m, "b", 60)
     for number in range(59):
@@ -131,7 +131,7 @@ def _counts(policy: rs.Policy) -> dict[str, int]:
     return found
 
 
-def test_the_cost_of_independent_choices_adds_up_and_does_not_multiply() -> None:
+def test_the_search_examines_independent_choices_one_by_one_and_not_in_all_combinations() -> None:
     m = rs.Module("m")
     wanted = signals(m, "x", 40)
     cheap: list[rs.Signal[None]] = []
@@ -144,7 +144,7 @@ def test_the_cost_of_independent_choices_adds_up_and_does_not_multiply() -> None
     m.rule(when=all_of(wanted), name="all")(nothing)
     (clause,) = rs.compile(m).clauses("m:all")
     assert clause.pathways[0] == {*wanted, *cheap}
-    assert len(clause.pathways) == MAX_PATHWAYS  # although there are 3^40
+    assert len(clause.pathways) == MAX_PATHWAYS  # although there are 3^40 pathways
 
 
 def test_the_search_in_a_torus_ends() -> None:
@@ -158,7 +158,7 @@ def test_the_search_in_a_torus_ends() -> None:
         m.rule(when=nodes[row * side + column], emits=(nodes[right], nodes[down]), name=f"r{row}_{column}")(nothing)
     policy = rs.compile(m)
     least = log((side * side + 1) / (side * side))
-    for row, column in ((0, 0), (0, 3), (2, 2)):  # near the entry, the utility is exact
+    for row, column in ((0, 0), (0, 3), (2, 2)):  # near the entry, the search finds the least pathway
         assert policy.utility(f"m:r{row}_{column}") == pytest.approx(least * (row + column + 1))
     for name in policy.rules:
         assert 0 <= policy.utility(name) <= least * side * side

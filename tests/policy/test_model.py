@@ -40,7 +40,7 @@ def test_a_signal_has_its_slot_and_overflow_policy() -> None:
     assert policy.signal_of["demo:lit:true"].slot == policy.slot_of["demo:lit"].index
 
 
-def test_a_need_has_a_bit_and_is_a_listener_of_its_signal() -> None:
+def test_each_constraint_has_a_bit_and_is_a_listener_of_its_signal() -> None:
     first, second = policy.rule_plan("demo:work").clauses
     assert [need.bit for need in first.needs] == [1, 2]
     assert (first.all_bits, first.firm_bits, first.asks_detached, first.simple) == (3, 1, True, False)

@@ -91,7 +91,7 @@ class Sketch:
     def __init__(self, clauses: list[list[Constraint]], gates: list[int], causes: set[str], detached: bool) -> None:
         self.clauses = clauses
         self.gates = gates  # for each clause: how many predicates on slots it has
-        self.causes = causes  # signals that it may cause (L7)
+        self.causes = causes  # signals that the rule may cause (L7)
         self.detached = detached
 
 
@@ -101,7 +101,7 @@ Pathway = frozenset[str]
 def completions(signal: str, way: Pathway, rules: list[Sketch], inputs: set[str]) -> set[Pathway]:
     """Return the completions of a signal: the signal and, recursively, its causes, once for each way to cause it (L8).
 
-    `way` has the signals between the clause and `signal`. If `signal` is already in it, there is a cycle, which is cut.
+    `way` has the signals between the clause and `signal`. If `signal` is already in `way`, the cycle is cut.
     """
     if signal in way:
         return {frozenset()}
@@ -117,7 +117,7 @@ def completions(signal: str, way: Pathway, rules: list[Sketch], inputs: set[str]
 
 
 def pathways(clause: list[Constraint], way: Pathway, rules: list[Sketch], inputs: set[str]) -> set[Pathway]:
-    """Return the pathways of a clause. Each combines one completion of each of its non-detached constraints."""
+    """Return the pathways of a clause. A pathway combines one completion of each non-detached constraint."""
     choices = [
         {frozenset({signal})} if detached else completions(signal, way, rules, inputs) for signal, detached, _ in clause
     ]
@@ -146,7 +146,7 @@ def utilities(rules: list[Sketch], inputs: set[str]) -> list[list[tuple[set[Path
 
 
 class World:
-    """Draw a random policy and its sketch."""
+    """A random policy, and the sketches of its rules."""
 
     def __init__(self, data: st.DataObject) -> None:
         draw = data.draw
@@ -216,7 +216,7 @@ def test_pathways_and_utilities_of_random_policies_follow_the_laws(data: st.Data
         assume(False)
         return
     expected = utilities(world.rules, world.inputs)
-    assume(max(len(found) for rule in expected for found, _ in rule) <= 100)  # the policy has dropped none of them
+    assume(max(len(found) for rule in expected for found, _ in rule) <= 100)  # so the policy has dropped no pathway
     for number, of_rule in enumerate(expected):
         clauses = policy.clauses(f"m:r{number}")
         assert len(clauses) == len(of_rule)

@@ -78,7 +78,7 @@ def test_one_policy_serves_many_contexts() -> None:
 # ---------------------------------------------------------------------------------------- with_settings
 
 
-def test_settings_replace_the_numbers_that_name_them() -> None:
+def test_given_settings_replace_the_defaults_of_the_settings_class() -> None:
     changed = policy.with_settings({"demo": Late(after=4.0)})
     assert changed.rule_plan(late).clauses[0].needs[0].min_age == 4.0
     assert policy.rule_plan(late).clauses[0].needs[0].min_age == 2.0
@@ -86,7 +86,7 @@ def test_settings_replace_the_numbers_that_name_them() -> None:
     assert changed.settings == {"demo": Late(after=4.0)}
 
 
-def test_a_policy_without_references_to_settings_stays_the_same_object() -> None:
+def test_with_settings_returns_the_same_policy_if_it_has_no_references_to_settings() -> None:
     plain = rs.compile(rs.Module("plain"))
     assert plain.with_settings({}) is plain
 
@@ -121,7 +121,7 @@ def test_adding_a_rule_makes_a_new_policy() -> None:
     assert [p.index for p in more.rule_plans] == [0, 1, 2]
     assert more.utility("demo:late") > policy.utility(
         "demo:late"
-    )  # `stop` is on the pathways of one rule of three, not of two
+    )  # `stop` is now on the pathways of one rule in three, and before of one in two
 
 
 def test_an_added_rule_can_refer_to_a_setting() -> None:

@@ -1,4 +1,4 @@
-"""`check` finds undeclared acts and forgotten awaits in the source of a rule's function."""
+"""`check` reads the source of a rule's function. It finds undeclared reads, writes and emits, and forgotten awaits."""
 
 import functools
 import inspect
@@ -22,7 +22,7 @@ class Names:
 
 
 def acts(function: Callable[..., Any], source: Any = inspect.getsource, **options: Any) -> tuple[Acts, list[str]]:
-    """Make a function a rule. Return its acts, and a phrase for each act that the rule does not declare."""
+    """Make a function a rule. Return its acts (reads, writes, ...), and a phrase for each undeclared act."""
     module = rs.Module("rules", requires=[demo])
     module.rule(when=go, name="work", **options)(function)
     plan = rs.compile(module).rule_plan("rules:work")
@@ -206,7 +206,7 @@ def test_a_branch_that_depends_on_the_value_of_a_slot_is_examined() -> None:
     assert list(acts(say)[0].emits) == [done]
 
 
-def test_the_advice_writes_built_in_signals_as_rs_dot_name() -> None:
+def test_the_advice_gives_a_built_in_flag_as_rs_dot_name() -> None:
     async def look(ctx: Any) -> None:
         ctx[rs.pressure]
 
@@ -227,6 +227,6 @@ async def guarded(ctx: Any) -> None:
         ctx[mood] = "quiet"
 
 
-def test_code_behind_a_guard_for_missing_names_causes_no_finding() -> None:
+def test_code_that_first_checks_whether_a_name_exists_causes_no_finding() -> None:
     found, missing = acts(guarded, writes=mood)
     assert (list(found.unknown), missing) == ([], [])

@@ -1,4 +1,4 @@
-"""Random worlds in which many rules hear one input, with slot predicates, cool-downs and cycles of topics."""
+"""Random worlds in which many rules react to one input, with slot predicates, cooldowns and cycles of topics."""
 
 from __future__ import annotations
 

@@ -25,7 +25,7 @@ __all__ = [
 
 @dataclass
 class Started:
-    """A run, and what it held at its start."""
+    """A run, with the slots, groups and spikes that it had at its start."""
 
     run: int
     rule: str
@@ -127,9 +127,9 @@ def waits_for_a_reason(play: Play) -> None:
 
 
 def joined(play: Play) -> None:
-    """Assert that no activation lacks a signal although a spike is live that fits it (L12).
+    """Assert that no activation lacks a spike although a live spike fits (L12).
 
-    Such a spike is younger than the activation, meets the constraint, and belongs to the right group.
+    A spike fits if it is younger than the activation, meets the constraint, and belongs to the right group.
     """
     engine = play.engine
     for activation in play.active():
@@ -173,12 +173,12 @@ def consistent(engine: Any) -> None:
         for need in clause.needs:
             spike = activation.spike(need)
             assert (spike is None) == bool(activation.missing & need.bit), (
-                f"{activation} is wrong about whether it lacks {need}"
+                f"the missing bits of {activation} are wrong for {need}"
             )
             lacks = activation in engine.state.lacking.get(need, ())
             assert lacks == (spike is None), f"{activation} is{'' if lacks else ' not'} listed as lacking {need}"
             if spike is not None:
-                assert activation in spike.holders, f"{activation} holds {spike}, which does not have it as a holder"
+                assert activation in spike.holders, f"{activation} holds {spike}, which does not list the activation"
                 if state < State.RUNNING:
                     assert spike in engine.state.live.get(spike.signal.index, ()), (
                         f"{activation} holds {spike}, which is not live"
@@ -193,7 +193,9 @@ def consistent(engine: Any) -> None:
             for member in group.members:
                 assert group in member.firm_groups(), f"{member} is in {group}, but holds no spike of it"
             for waiter in group.interested:
-                assert waiter in engine.state.waiting, f"{waiter} is in {group} as interested, but does not wait"
+                assert waiter in engine.state.waiting, (
+                    f"{group} lists {waiter} as interested, but the activation does not wait"
+                )
             for slot, holders in group.taken.items():
                 assert holders is None or (holders and all(h.state >= State.RUNNING for h in holders)), slot
     known = set(activations)
@@ -216,7 +218,7 @@ def consistent(engine: Any) -> None:
     for half, spikes in engine.state.halves.items():
         assert spikes, f"an empty table of {half} is kept"
         for spike in spikes:
-            assert half in engine.state.halves_of(spike), f"{half} holds {spike}, which does not have it as a holder"
+            assert half in engine.state.halves_of(spike), f"{half} holds {spike}, which does not list the half"
             assert any(engine.state.keeps(need, spike) for need in half.needs), (
                 f"{half} holds {spike}, which fits none of its needs"
             )

@@ -16,7 +16,7 @@ __all__ = ["worlds"]
 
 @lru_cache(
     maxsize=None, typed=True
-)  # Hypothesis checks each new strategy; without a cache, this takes a third of the time
+)  # Hypothesis checks each new strategy; without a cache, the checks take a third of the time
 def pick(*values: Any) -> st.SearchStrategy[Any]:
     """Return a strategy for one of these values."""
     return st.sampled_from(values)

@@ -54,7 +54,7 @@ def test_each_spike_of_a_burst_of_ten_thousand_is_handled_once_and_leaves_nothin
     assert count() == before
     empty(play)
     assert play.engine.state.dropped == {}
-    assert not NOTHING and not NO_NUMBERS  # the table that all engines share stays empty
+    assert not NOTHING and not NO_NUMBERS  # the tables that all engines share stay empty
 
 
 @settings(max_examples=15)

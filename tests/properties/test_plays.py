@@ -10,7 +10,7 @@ from properties.worlds import Play, World
 
 
 @given(worlds(adds=True))
-def test_rules_that_exclude_each_other_never_both_finish_for_one_cause(world: World) -> None:
+def test_rules_that_exclude_each_other_never_both_fire_for_one_cause(world: World) -> None:
     """Also, no rule runs too early, twice on the same spikes, or before a ready rule of greater utility."""
     Play(world, started=Exclusion()).play()
 

@@ -35,7 +35,7 @@ def test_the_engine_follows_the_laws_where_pairs_compete(part: int) -> None:
 
 
 @pytest.mark.parametrize("part", range(PARTS))
-def test_the_engine_follows_the_laws_where_many_rules_hear_one_input(part: int) -> None:
+def test_the_engine_follows_the_laws_where_many_rules_react_to_one_input(part: int) -> None:
     for seed in range(part, CROWD_SEEDS, PARTS):
         check(varied(crowd_world_of(seed), seed), seed)
 
@@ -49,7 +49,7 @@ def test_a_tracer_changes_nothing_and_journals_replay_with_and_without_a_tracer(
             pytest.fail(f"seed {seed}: {least!r}\n{observation(least)}")
 
 
-def test_a_rule_that_recovers_at_the_moment_of_another_event_takes_part_in_it() -> None:
+def test_a_rule_that_recovers_at_the_moment_of_an_event_already_has_its_full_utility() -> None:
     check(crowd_world_of(901_469), 901_469)
 
 
@@ -65,7 +65,7 @@ def test_a_tracer_does_not_change_the_numbers_of_runs(order: str) -> None:
 
 
 def test_an_activation_that_begins_to_wait_for_a_run_is_no_longer_in_a_stalemate() -> None:
-    """Once `r1` runs for the first s0, its activation for the second s0 waits for that run. `r3` and `r0` wait too."""
+    """`r1` runs for the first s0. For the second s0, `r1` waits for the end of this run, and so do `r3` and `r0`."""
     both = (Want("s0"), Want("s2"))
     rules = (
         RuleOf(when=((Want("s0"),),), writes=("v0",)),
@@ -78,7 +78,7 @@ def test_an_activation_that_begins_to_wait_for_a_run_is_no_longer_in_a_stalemate
 
 
 def test_a_waiting_activation_is_reconsidered_as_soon_as_a_rival_gives_up() -> None:
-    """At 0.5 s, the patience of `r3` for `r0` ends. Then `r2` must run, although it asked at 0.5 s before (L16)."""
+    """At 0.5 s, `r2` asks for consent in vain. Then the patience of `r3` ends, so `r2` must ask again (L16)."""
     half = Act(seconds=0.5)
     rules = (
         RuleOf(when=((Want("s1"), Want("s0")),), writes=("v0",), weight=0.5),

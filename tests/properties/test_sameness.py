@@ -43,7 +43,7 @@ def test_a_spurious_advance_changes_nothing(world: World, parts: list[float]) ->
 
 
 @given(worlds())
-def test_a_snapshot_or_an_explanation_changes_nothing(world: World) -> None:
+def test_a_snapshot_does_not_change_what_happens_next(world: World) -> None:
     assert Play(world, before=lambda play: void(still(play))).play().heard == Play(world).play().heard
 
 
@@ -78,7 +78,7 @@ def test_an_added_rule_that_never_runs_changes_nothing(world: World, steps: int)
     assert changed.play().heard == plain.play().heard
 
 
-def test_the_seed_of_hashes_does_not_affect_the_effects() -> None:
+def test_the_hash_seed_does_not_affect_the_effects() -> None:
     batch: list[World] = []
 
     @settings(max_examples=60, phases=[Phase.generate], suppress_health_check=list(HealthCheck))

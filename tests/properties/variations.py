@@ -10,7 +10,7 @@ from properties.worlds import MODULES, Act, Clause, Gate, Op, RuleOf, Want, Worl
 
 
 def varied(world: World, seed: int) -> World:
-    """Return a world after random variations, or without them. A variation that does not compile is left out."""
+    """Return a world with random variations, or unchanged. Leave out a variation that does not compile."""
     chance = random.Random(f"variation {seed}")
     for variation in (_doubtful, _scattered, _extended):
         if chance.random() < 0.3 and compiles(other := variation(world, chance)):
@@ -34,7 +34,7 @@ def _extended(world: World, chance: random.Random) -> World:
 
 
 def _pair(world: World, chance: random.Random, signals: list[str]) -> RuleOf:
-    """Return a plain rule that hears two signals."""
+    """Return a rule `a & b` without options."""
     return RuleOf((tuple(Want(signal) for signal in chance.sample(signals, 2)),), _slot(world, chance))
 
 

@@ -128,7 +128,7 @@ class Act(Brief):
 
 @dataclass(frozen=True, repr=False)
 class RuleOf(Brief):
-    """A rule, and the work of its function at each call. After the last item of `acts`, the first one follows."""
+    """A rule, and the work of its function: each call does the next of `acts`, and starts again after the last one."""
 
     when: tuple[Clause, ...]
     writes: tuple[str, ...] = ()
@@ -301,7 +301,7 @@ class Play:
     before: Callable[[Play], None] | None = None
     """A callback before time passes. The engine has settled, and nothing happens until `self.next_time()`."""
     started: Callable[[Play, Effect], None] | None = None
-    """A callback with each effect of a batch, before the first of them is performed."""
+    """A callback that gets each effect of a batch before any of them is performed."""
     budget: int = BUDGET
     """The number of calls after which a rule retires."""
     machine: Callable[..., Any] = Counted
@@ -320,7 +320,7 @@ class Play:
             self.engine.tracer = lambda record: self.trace.append(repr(record))
         self.specs = {self.world.full(f"r{number}"): rule for number, rule in enumerate(self.world.rules)}
         self.calls: dict[str, int] = {}
-        self.acts: dict[int, tuple[str, Act]] = {}  # by run; only runs that have not ended
+        self.acts: dict[int, tuple[str, Act]] = {}  # for each run that has not ended: its rule and its work
         self.todo: list[tuple[float, int, int, Op]] = []  # time, number, run, operation
         self.count = 0
         time = 0.0

@@ -1,6 +1,6 @@
 """Measure the blind sets. Their authors did not see code or examples, and no module is tuned on them.
 
-`make quality` prints their shares. It never prints a sentence, because engineers must not see them.
+`make quality` prints the shares of right results. It never prints a sentence, because engineers must not see the sets.
 """
 
 from __future__ import annotations
@@ -106,7 +106,7 @@ def _facts(label: str) -> frozenset[str]:
 def _wanted(label: str) -> tuple[frozenset[str], frozenset[str]]:
     """Return the facts that must be stored, and the facts that may be stored.
 
-    A fact of the second kind has a ``+``, or denies an old value that a new value replaces anyway.
+    A fact that may be stored has a ``+``, or denies an old value that a new value replaces anyway.
     """
     named = _facts(label)
     told = {fact.partition("=")[0] for fact in named}

@@ -88,7 +88,7 @@ def _same(triples: Iterable[tuple[str, str, str]]) -> Iterable[tuple[str, str, s
 
 
 def _in_lower_case(triples: Iterable[tuple[str, str, str]]) -> Iterable[tuple[str, str, str]]:
-    """Return triples in lower case, because people type capitals or not."""
+    """Return triples in lower case, because some people type without capitals."""
     return [(subject.lower(), predicate, thing.lower()) for subject, predicate, thing in triples]
 
 

@@ -32,8 +32,7 @@ class Reply:
 
 @dataclass(frozen=True)
 class Fact:
-    """A question, with the content that its reply must have. Without answers and a number, the right reply is
-    silence."""
+    """A question, with the content that its reply must have. If it has no answers and no number, silence is right."""
 
     question: str
     answers: tuple[str, ...] = ()
@@ -56,7 +55,7 @@ class Fact:
 
 @dataclass
 class Result:
-    """The counts of one set, in the order in which the tool prints them, and the sentences with wrong results.
+    """The results of one set: its shares, in the order in which the tool prints them, and the sentences with wrong results.
 
     `shares` are fractions from 0 to 1; the README defines them.
     """
@@ -110,7 +109,10 @@ def measure_triples(see: Callable[[str], Iterable[Iterable[str]]], cases: list[t
 
 
 def measure_labels(name: str, see: Callable[[str], str], cases: list[tuple[str, str]]) -> Result:
-    """Measure the share of right labels, and the F1 score of all labels except `-`; a wrong label is not a hit."""
+    """Measure the share of right labels, and the F1 score of all labels except `-`.
+
+    For the F1 score, a wrong label is a miss and a false alarm.
+    """
     right = hits = given = 0
     misses: list[str] = []
     for text, expected in cases:
@@ -158,7 +160,7 @@ def table(results: Iterable[Result]) -> str:
 
 
 def main(argv: list[str] | None = None) -> int:
-    """Measure the functions of the module on the command line."""
+    """Measure the sets of the modules on the command line."""
     parser = argparse.ArgumentParser(description="Measure how well text is understood.")
     parser.add_argument(
         "modules", nargs="+", metavar="MODULE", help="dotted name of a module with a function `results`"

@@ -53,7 +53,7 @@ class _Prepared(Pipeline):
 
 
 def prepare(texts: Iterable[str]) -> None:
-    """Parse all sentences of a set. The pipeline makes batches of waiting texts, which takes a third of the time."""
+    """Parse all sentences of a set in threads, so that the pipeline makes batches. This takes a third of the time."""
     normals = [pipeline("").normalise(text, Settings().agent_names) for text in texts]
     with ThreadPoolExecutor(2 * TOGETHER) as pool:
         _Prepared.trees.update(zip(normals, pool.map(pipeline("").read, normals), strict=True))

@@ -142,17 +142,17 @@ def agentqa_remarks(sentence: str) -> str:
 
 
 def genqa_declined(sentence: str) -> str:
-    """Return whether genqa answers a question; ``-`` if no document can have the answer."""
+    """Return ``said`` if genqa answers a question; otherwise ``-``."""
     return "-" if modules.genqa(sentence) is None else "said"
 
 
 def wildtalk_facts(sentence: str) -> str:
-    """Return whether small talk does not answer a question, because it asks for a fact."""
+    """Return ``fact`` if a sentence asks for a fact, so that small talk must not answer it; otherwise ``-``."""
     return "fact" if asks_for_fact(sentence) else "-"
 
 
 def hibye_words(sentence: str) -> str:
-    """Return whether a sentence is only a greeting, or only a farewell."""
+    """Return ``greeting`` or ``farewell`` if a sentence is nothing else; otherwise ``-``."""
     bundled_matcher("acts").load()
     said = heard(sentence)
     return next((act for act in ("greeting", "farewell") if only(act, said)), "-")

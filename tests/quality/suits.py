@@ -1,8 +1,8 @@
-"""Learn how the listener judges whether the replies of an entry in its bank suit an utterance.
+"""Learn the weights with which the listener judges whether replies from its bank suit an utterance.
 
     python tests/quality/suits.py
 
-This command learns the weights of `wildtalk.listening.suitability` from suits_rows.tsv, and prints them. It takes a
+This command learns the constants of `wildtalk.listening.suitability` from suits_rows.tsv, and prints them. It takes a
 minute.
 """
 

@@ -1,6 +1,7 @@
 """Measure whole conversations: how often the last answer of the complete agent fits.
 
-Each row of talks_rows.tsv has a cause, a few utterances of the user, and a regular expression for the last answer.
+Each row of talks_rows.tsv has a cause, a few utterances of the user, and a regular expression for the last answer. If
+the expression begins with ``!``, the answer must not match the rest.
 """
 
 from __future__ import annotations

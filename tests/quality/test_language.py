@@ -44,7 +44,7 @@ def test_known_sentences_are_understood(name: str) -> None:
     assert share >= FLOORS.get(name, FLOOR), "\n".join(result.misses)
 
 
-def test_the_measurements_give_the_same_results_as_a_whole_analysis() -> None:
+def test_the_fast_measurements_give_the_same_results_as_the_whole_analysis_of_nlp() -> None:
     for text, _ in (*labelled("triples_rows")[::30], *labelled("questions_rows")[::20]):
         whole = modules._seen(text)
         assert [tuple(map(modules.text_of, triple)) for triple in whole.triples] == modules.triples(text)

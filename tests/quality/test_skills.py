@@ -1,4 +1,4 @@
-"""The skills still understand the sentences of their sets."""
+"""The skills still understand the sentences of their quality sets."""
 
 from __future__ import annotations
 
@@ -36,7 +36,7 @@ def test_the_share_of_right_labels_stays_above_the_floor(name: str) -> None:
         ("names_rows", 0.98, 0.95),
     ],
 )
-def test_told_facts_are_stored_and_wrong_facts_are_not(name: str, right: float, clean: float) -> None:
+def test_facts_that_users_tell_are_stored_and_wrong_facts_are_not(name: str, right: float, clean: float) -> None:
     _, kept, tricky = blind.measured_facts(f"../{name}")
     assert kept.shares["right"] >= right
     assert tricky.shares["nothing wrong"] >= clean
@@ -54,7 +54,7 @@ def test_distress_is_never_missed() -> None:
     assert measure.measure_labels("distress", skills.agentqa_remarks, cases).misses == []
 
 
-def test_the_set_of_questions_to_the_agent_has_none_of_its_examples() -> None:
+def test_the_set_agentqa_asks_has_no_example_of_agentqa() -> None:
     life = read_life()
     examples = {plain(question) for topic in life.topics.values() for question in topic.questions}
     examples |= set(map(plain, life.others))

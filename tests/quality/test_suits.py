@@ -1,4 +1,4 @@
-"""The listener knows which replies in its bank suit an utterance. It has not learnt from these utterances."""
+"""The listener knows which replies in its bank suit an utterance, even one from which its weights were not learned."""
 
 from __future__ import annotations
 
@@ -12,5 +12,5 @@ def test_most_replies_that_the_listener_chooses_suit_the_utterance() -> None:
     found, suits = evidence("suits_kept")
     chosen = np.array([one.probability() for one in found]) >= ALIKE
     print(suits[chosen].mean(), chosen.sum(), suits[chosen].sum() / suits.sum())
-    assert suits[chosen].mean() >= 0.68  # if only similarity decided, less than half would suit
+    assert suits[chosen].mean() >= 0.68  # if only similarity decided, fewer than half would suit
     assert suits[chosen].sum() / suits.sum() >= 0.3

@@ -1,4 +1,7 @@
-"""The tone of utterances: the share of right tones, and of sad utterances that are taken for cheerful ones."""
+"""The tone of utterances: the share of right tones, and the share of dark utterances that count as cheerful.
+
+A dark utterance is sad, angry or tired, and not funny.
+"""
 
 from __future__ import annotations
 

@@ -17,7 +17,7 @@ def text_of(path: str) -> str:
 def test_the_first_page_leads_to_every_other_page() -> None:
     linked = set(re.findall(r"\]\(([\w/.-]+\.md)\)", text_of("docs/index.md")))
     pages = {page.relative_to(DOCS).as_posix() for page in DOCS.rglob("*.md")}
-    # a reader reaches the pages of the reference through its own index
+    # a reader reaches the pages of the reference through the index of the reference
     of_the_reference = {page for page in pages if page.startswith("reference/")}
     assert linked == pages - of_the_reference - {"index.md"} | {"reference/index.md"}
 

@@ -47,13 +47,13 @@ REGISTRIES = [
 ]
 
 
-def test_no_file_names_a_package_registry() -> None:
-    """Pins name packages and versions. The installing machine chooses the registry."""
+def test_no_file_contains_the_name_of_a_package_registry() -> None:
+    """The constraints have names and versions of packages. The machine that installs them chooses the registry."""
     found = lines_matching(re.compile("|".join(REGISTRIES), re.IGNORECASE), kept_files())
     assert not found, "\n".join(found)
 
 
-def test_no_file_names_a_folder_of_this_machine() -> None:
+def test_no_file_contains_the_path_of_a_folder_of_this_machine() -> None:
     """No file contains the path of this checkout or of a user's home folder."""
     folders = [re.escape(str(place)) for place in (ROOT, Path.home()) if len(place.parts) > 2]
     folders += [r"/(?:home|Users)/(?!user\b|me\b|you\b|runner\b)\w+", r"(?<![\w.])/(?:ro" r"ot|wo" r"rk)/\w"]
@@ -67,7 +67,7 @@ def test_the_constraints_file_has_only_names_and_versions() -> None:
     assert [line for line in lines if not pin.fullmatch(line)] == []
 
 
-def test_every_source_file_says_what_it_is() -> None:
+def test_every_source_file_has_a_docstring() -> None:
     silent: list[str] = []
     for file in sorted(SOURCE.rglob("*.py")):
         said = ast.get_docstring(ast.parse(file.read_text(encoding="utf-8"))) or ""
@@ -76,7 +76,7 @@ def test_every_source_file_says_what_it_is() -> None:
     assert not silent, "\n".join(silent)
 
 
-def test_texts_are_cut_in_one_place() -> None:
+def test_only_one_function_shortens_texts() -> None:
     """`wording.cut` shortens the texts of messages, so that each shortened text ends in the same way."""
     found = [
         f"{file.relative_to(ROOT)}:{node.lineno}"

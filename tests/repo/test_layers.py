@@ -121,7 +121,7 @@ def test_skills_do_not_import_platforms() -> None:
     assert not guilty, "\n".join(guilty)
 
 
-def test_all_modules_are_folders_with_the_same_files() -> None:
+def test_every_module_is_a_folder_with_an_init_file_and_a_readme() -> None:
     missing = [
         f"modules/{kind}/{place.name}: no {wanted}"
         for kind in KINDS

@@ -153,7 +153,7 @@ def test_a_block_with_a_title_has_its_own_namespace_and_can_be_continued(tmp_pat
         page.run(page.blocks[3])
 
 
-def test_leavings_returns_the_files_that_blocks_have_created(tmp_path: Path) -> None:
+def test_the_leavings_of_a_page_are_the_files_that_its_blocks_have_created(tmp_path: Path) -> None:
     page = page_of(
         tmp_path,
         '```yaml title="a/b.yaml"\ny: 6\n```\n```python\nimport pathlib\npathlib.Path("new").touch()\n```\n',

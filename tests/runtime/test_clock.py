@@ -20,7 +20,7 @@ class Scene:
 
     def __init__(self) -> None:
         self.loop = VirtualLoop()
-        self.loop.run_to(7.0)  # the clock begins later than its loop
+        self.loop.run_to(7.0)  # so that the clock starts later than its loop
         self.clock = Clock(self.loop)
         self.woken: list[tuple[str, float]] = []
 
@@ -40,7 +40,7 @@ def scene() -> Scene:
     return Scene()
 
 
-def test_a_clock_follows_its_loop_from_zero(scene: Scene) -> None:
+def test_a_clock_starts_at_zero_and_then_advances_with_its_loop(scene: Scene) -> None:
     assert scene.clock.now() == 0.0
     scene.sleeper("a", 2.0)
     scene.sleeper("b", 1.0)
@@ -69,7 +69,7 @@ def test_sleeping_for_nan_seconds_is_refused(scene: Scene) -> None:
     scene.loop.close()
 
 
-def test_the_clock_is_set_forward_only_while_it_is_halted_and_never_back(scene: Scene) -> None:
+def test_the_clock_can_be_set_forward_only_while_it_is_halted_and_never_back(scene: Scene) -> None:
     scene.sleeper("a", 2.0)
     scene.pass_by(0.5)
     scene.clock.set(3.0)
@@ -247,7 +247,7 @@ def test_a_driven_clock_advances_only_when_a_rule_sets_it() -> None:
         slept.append(ctx.now)
 
     async def main() -> None:
-        others = Clock(asyncio.get_running_loop())  # this clock follows the loop, and not the context
+        others = Clock(asyncio.get_running_loop())  # this clock advances with the loop, not with the context
         async with rs.Context(m) as context:
 
             async def at(time: float) -> None:

@@ -144,7 +144,7 @@ def test_patience_is_a_number_of_seconds(patience: Any) -> None:
 
 
 @on_loop
-async def test_next_returns_the_answer_to_a_put_or_an_emit() -> None:
+async def test_context_next_returns_the_answer_to_a_put_or_an_emit() -> None:
     async with rs.Context(policy) as context:
         answer = asyncio.create_task(context.next(said.changed))
         await turns(1)
@@ -202,7 +202,7 @@ async def test_several_tasks_can_wait_for_the_same_signal() -> None:
 
 
 @on_loop
-async def test_next_returns_a_spike_that_is_already_due_without_a_turn_of_the_event_loop(
+async def test_context_next_returns_a_spike_that_is_already_due_without_a_turn_of_the_event_loop(
     monkeypatch: pytest.MonkeyPatch,
 ) -> None:
     monkeypatch.setattr(runner, "perf_counter", lambda: 0.0)  # on a slow machine, the loop would get its turn earlier
@@ -244,7 +244,7 @@ async def test_a_rule_does_not_run_in_the_task_that_waits_for_its_signal() -> No
 
 
 @on_loop
-async def test_next_raises_an_error_after_its_timeout() -> None:
+async def test_context_next_raises_an_error_after_its_timeout() -> None:
     async with rs.Context(policy) as context:
         with pytest.raises(TimeoutError, match="no demo:number within 0 s"):
             await context.next(number, timeout=0)
@@ -267,7 +267,7 @@ async def test_tasks_that_wait_for_a_signal_get_an_error_when_the_context_ends()
 
 
 @on_loop
-async def test_quiet_waits_for_running_rules_and_ends_with_the_context() -> None:
+async def test_context_quiet_waits_for_running_rules_but_only_until_the_context_ends() -> None:
     m = rs.Module("m")
     go, done = m.signal("go"), m.slot("done", 0)
     gate = asyncio.Event()
@@ -282,7 +282,7 @@ async def test_quiet_waits_for_running_rules_and_ends_with_the_context() -> None
         await asyncio.get_running_loop().create_future()
 
     async with rs.Context(m) as context:
-        await context.quiet()  # it does not wait for background rules
+        await context.quiet()  # does not wait for background rules
         context.emit(go)
         waiting = asyncio.create_task(context.quiet())
         await turns()
@@ -294,11 +294,11 @@ async def test_quiet_waits_for_running_rules_and_ends_with_the_context() -> None
         context.emit(go)
         waiting = asyncio.create_task(context.quiet())
         await turns()
-    await waiting  # no rule runs any more
+    await waiting  # the end of the context has cancelled the rule
 
 
 @on_loop
-async def test_quiet_does_not_wait_for_background_rules() -> None:
+async def test_context_quiet_does_not_wait_for_background_rules() -> None:
     m = rs.Module("m")
     go, done = m.signal("go"), m.slot("done", 0)
 
@@ -317,7 +317,7 @@ async def test_quiet_does_not_wait_for_background_rules() -> None:
 
 
 @on_loop
-async def test_put_immediately_refuses_a_value_of_the_wrong_type() -> None:
+async def test_context_put_immediately_refuses_a_value_of_the_wrong_type() -> None:
     m = rs.Module("m")
     heard = m.slot("heard", "", type=str)
     async with rs.Context(m) as context:
@@ -362,7 +362,7 @@ async def test_waiting_for_an_unknown_signal_is_refused() -> None:
 
 
 @on_loop
-async def test_put_refuses_anything_but_a_mapping_for_a_collection() -> None:
+async def test_context_put_accepts_only_a_mapping_for_a_collection() -> None:
     async with rs.Context(policy) as context:
         with pytest.raises(rs.RuleError, match="demo:people is a collection: write a mapping of keys to items"):
             context.put(people, ["Ada"])
@@ -560,7 +560,7 @@ def test_a_rule_for_shutdown_runs_even_if_a_rival_first_keeps_it_waiting() -> No
     assert ending.told == ["farewell at 1 s"]
 
 
-def test_a_farewell_is_not_cut_off_when_shutdown_interrupts_another_rule() -> None:
+def test_a_rule_for_shutdown_is_not_cut_off_when_shutdown_interrupts_another_rule() -> None:
     ending = Ending()
 
     @ending.rule(ending.go, until=rs.shutdown)
@@ -577,7 +577,7 @@ def test_a_farewell_is_not_cut_off_when_shutdown_interrupts_another_rule() -> No
     assert ending.told == ["farewell"]
 
 
-def test_a_farewell_that_has_waited_for_a_long_rule_is_not_cut_off() -> None:
+def test_a_rule_that_also_waits_for_shutdown_is_not_cut_off_while_a_long_rule_runs() -> None:
     ending = Ending()
     never = ending.module.signal("never")
 

@@ -247,7 +247,7 @@ async def test_tools_of_asyncio_work_from_the_first_step() -> None:
 
 
 @on_loop
-async def test_context_variables_that_a_coroutine_sets_last_until_its_end() -> None:
+async def test_a_context_variable_keeps_the_value_that_a_coroutine_sets_until_the_coroutine_ends() -> None:
     eager = make()
     seen: list[str] = []
 

@@ -47,7 +47,7 @@ def remember(ctx: rs.RuleContext) -> None:
 
 
 async def conversation(context: rs.Context) -> None:
-    """Put single inputs and several inputs together, with and without waiting. Also add a rule."""
+    """Give the context inputs one by one and several at the same time, with and without a wait. Also add a rule."""
     context.put(heard, "hello")
     await context.quiet()
     context.put(heard, "why?")

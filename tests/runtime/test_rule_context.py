@@ -29,7 +29,7 @@ class Scene:
         self.found: list[Any] = []
 
     def run(self, act: Callable[[rs.RuleContext], object], when: rs.Condition | None = None, **options: Any) -> None:
-        """Declare a rule that calls a function once. The result or the error of the function is kept."""
+        """Declare a rule that calls `act` with its context, and keeps the result."""
 
         async def doer(ctx: rs.RuleContext) -> None:
             self.found.append(act(ctx))
@@ -59,7 +59,7 @@ def write(slot: rs.Slot[Any], value: object) -> Callable[[rs.RuleContext], None]
 # ---------------------------------------------------------------------------------------- reading
 
 
-def test_slots_that_are_read_or_written_can_be_read(scene: Scene) -> None:
+def test_a_rule_can_read_the_slots_that_it_declares_to_read_or_to_write(scene: Scene) -> None:
     scene.run(lambda ctx: (ctx[scene.mood], ctx[scene.note]), reads=scene.mood, writes=scene.note)
     assert scene.outcome() == ("calm", "")
 
@@ -273,7 +273,7 @@ def test_a_collection_that_is_only_read_cannot_be_changed(scene: Scene, act: Cal
 
 
 @pytest.mark.parametrize("value", [5, ["Ada"], None, "Ada"])
-def test_writing_anything_but_a_mapping_to_a_collection_is_refused(scene: Scene, value: object) -> None:
+def test_only_a_mapping_can_be_written_to_a_collection(scene: Scene, value: object) -> None:
     scene.run(write(scene.people, value), writes=scene.people)
     failure = scene.outcome()
     assert isinstance(failure, rs.RuleError)
@@ -349,7 +349,7 @@ def test_undeclared_emissions_are_refused(scene: Scene, what: Callable[[Scene], 
     assert isinstance(failure, rs.UndeclaredError) and text in str(failure)
 
 
-def test_wiping_withdraws_and_unknown_signals_are_refused(scene: Scene) -> None:
+def test_wiping_a_signal_withdraws_its_spikes_and_an_unknown_signal_is_refused(scene: Scene) -> None:
     scene.run(lambda ctx: ctx.wipe(scene.mood))
     assert "no signal 'm:mood'; did you mean 'm:mood:changed'" in str(scene.outcome())
     scene = Scene()

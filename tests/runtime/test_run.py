@@ -40,7 +40,7 @@ def test_a_rule_can_end_the_agent_and_rules_for_shutdown_still_run() -> None:
     assert told == ["start", "end"]
 
 
-def test_run_takes_the_same_options_as_a_context() -> None:
+def test_rs_run_takes_the_same_options_as_a_context() -> None:
     class Options(rs.Settings):
         word: str = "a"
 
@@ -232,7 +232,7 @@ async def test_a_timeout_around_a_context_or_a_server_raises_timeout_error() -> 
 
 
 @on_loop
-async def test_run_in_a_running_loop_is_refused_and_leaves_no_coroutine() -> None:
+async def test_rs_run_in_a_running_loop_is_refused_and_leaves_no_coroutine() -> None:
     with warnings.catch_warnings():
         warnings.simplefilter("error")
         with pytest.raises(rs.EngineError, match=r"rs.run starts an event loop.*async with rs.Context"):

@@ -96,7 +96,7 @@ WHERE = pytest.mark.parametrize("where", ["immediately", "later", "in a thread"]
     "error", [ValueError("broken"), Strange("odd"), asyncio.CancelledError(), TimeoutError(), GeneratorExit()]
 )
 @on_loop
-async def test_a_rule_that_raises_an_error_is_logged_once_and_the_next_best_rule_answers(
+async def test_the_error_of_a_rule_is_logged_once_and_the_next_best_rule_answers(
     error: BaseException, where: str
 ) -> None:
     talk = Talk()
@@ -146,7 +146,7 @@ def test_the_trace_has_the_line_in_which_a_rule_failed() -> None:
 
     @module.rule(when=slow)
     def parse(ctx: rs.RuleContext) -> None:
-        int("twelve")  # built-in code raises this error, and has no file
+        int("twelve")  # the error comes from built-in code, which has no file
 
     with simulate(module) as sim:
         sim.emit(go)
@@ -285,7 +285,7 @@ async def test_a_rule_that_takes_too_many_arguments_fails_like_any_other() -> No
 
 
 @on_loop
-async def test_after_a_rule_that_fails_after_writing_no_other_rule_answers() -> None:
+async def test_no_other_rule_answers_if_a_rule_fails_after_it_has_written() -> None:
     talk = Talk()
 
     async def halfway(ctx: rs.RuleContext) -> None:
@@ -322,7 +322,7 @@ async def test_outcomes_can_be_returned_or_raised(outcome: Any, how: str) -> Non
 
 
 @on_loop
-async def test_an_error_names_a_predicate_that_fails_and_it_counts_as_false() -> None:
+async def test_a_predicate_that_fails_counts_as_false_and_the_error_names_it() -> None:
     talk = Talk()
 
     async def picky(ctx: rs.RuleContext) -> None:
@@ -541,7 +541,7 @@ async def test_a_partial_an_object_or_a_method_can_be_a_plain_rule(function: Any
 
 
 @on_loop
-async def test_wiping_its_signal_does_not_end_the_run_of_a_plain_partial() -> None:
+async def test_wiping_the_signal_of_a_plain_partial_does_not_end_its_run() -> None:
     """The engine knows that the rule is a plain function. Its thread cannot be stopped, so the run continues."""
     talk = Talk()
     begun, release = threading.Event(), threading.Event()

@@ -192,7 +192,7 @@ def test_if_no_thread_can_be_started_a_job_waits_for_an_existing_thread_or_fails
     jobs.close()
 
 
-def test_the_process_waits_only_for_a_while_for_running_functions_before_it_ends() -> None:
+def test_a_process_that_ends_waits_a_limited_time_for_running_functions() -> None:
     program = """
 import threading
 from ravestate.runtime import workers

@@ -260,7 +260,7 @@ def burst(play: Play) -> None:
 def live_objects() -> int:
     """Count the spikes, activations and groups that are still in memory."""
     gc.collect()
-    # `isinstance` could run the code of an object.
+    # Compare types, because `isinstance` could run an object's own code.
     return sum(type(one) in (Spike, Activation, Group) for one in gc.get_objects())
 
 

@@ -21,7 +21,7 @@ def test_the_error_names_the_rule_of_a_loop_without_a_minimum_age() -> None:
         sim.emit(a)
 
 
-def test_a_rule_that_requires_that_there_is_no_pressure_runs_after_a_wait() -> None:
+def test_a_rule_can_require_that_there_is_no_pressure_although_its_own_wait_raises_pressure() -> None:
     m = rs.Module("m")
     x, y, out = m.signal("x"), m.signal("y"), m.slot("out", "")
 
@@ -108,7 +108,7 @@ def test_rules_that_plain_functions_add_at_the_same_time_are_all_kept() -> None:
     assert asyncio.run(main()) == 8
 
 
-def test_a_slots_default_that_cannot_be_copied_is_a_fault() -> None:
+def test_the_default_of_a_slot_must_be_a_value_that_can_be_copied() -> None:
     m = rs.Module("m")
     m.slot("lock", threading.Lock())
     with pytest.raises(rs.DeclarationErrors) as caught:

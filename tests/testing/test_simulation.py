@@ -48,7 +48,7 @@ def clock() -> tuple[rs.Module, rs.Signal[Any], list[float]]:
 # ---------------------------------------------------------------------------------------- what a simulation records
 
 
-def test_said_lists_every_output_from_startup_to_the_end() -> None:
+def test_the_attribute_said_lists_every_output_from_startup_to_the_end() -> None:
     with simulate(talk()) as sim:
         assert sim.said == ["hello"]
         sim.say("you")
@@ -58,7 +58,7 @@ def test_said_lists_every_output_from_startup_to_the_end() -> None:
     assert sim.said == ["hello", "YOU", "bye"]
 
 
-def test_fired_lists_the_rules_that_did_not_resign_in_the_order_of_their_ends() -> None:
+def test_the_attribute_fired_lists_the_rules_that_did_not_resign_in_the_order_of_their_ends() -> None:
     module, go, _ = clock()
 
     @module.rule(when=go)
@@ -80,7 +80,7 @@ def test_fired_lists_the_rules_that_did_not_resign_in_the_order_of_their_ends() 
         assert sim.fired == ["clock:quick", "clock:slow"]
 
 
-def test_failures_lists_each_failed_rule_with_its_exception(caplog: pytest.LogCaptureFixture) -> None:
+def test_the_attribute_failures_lists_each_failed_rule_with_its_exception(caplog: pytest.LogCaptureFixture) -> None:
     module, go, _ = clock()
 
     @module.rule(when=rs.startup)
@@ -278,7 +278,7 @@ def test_the_error_names_a_plain_function_that_holds_virtual_time_back(monkeypat
 # ---------------------------------------------------------------------------------------- advance, settle
 
 
-def test_advance_settles_before_and_after_and_stops_at_the_exact_time() -> None:
+def test_the_method_advance_settles_before_and_after_and_stops_at_the_exact_time() -> None:
     module, go, at = clock()
 
     @module.rule(when=go)
@@ -316,7 +316,7 @@ def test_advancing_in_parts_has_the_same_effect_as_one_advance() -> None:
     assert times([7.0]) == times([0.5] * 14) == times([3.25, 3.75]) != []
 
 
-def test_settle_does_everything_that_is_due_now() -> None:
+def test_the_method_settle_does_everything_that_is_due_now() -> None:
     module, go, at = clock()
 
     @module.rule(when=go)
@@ -335,7 +335,7 @@ def test_settle_does_everything_that_is_due_now() -> None:
         assert at == [0.0]
 
 
-def test_advance_refuses_a_negative_time() -> None:
+def test_the_method_advance_refuses_a_negative_time() -> None:
     with simulate() as sim, pytest.raises(ValueError, match=r"advance\(-1\): time does not run backwards"):
         sim.advance(-1)
 
@@ -362,7 +362,7 @@ def test_a_simulation_can_be_used_only_within_its_with_block_and_only_once() -> 
         sim.__enter__()
 
 
-def test_say_without_rawio_raises_an_error_that_names_rawio() -> None:
+def test_the_method_say_raises_an_error_that_names_rawio_if_rawio_is_missing() -> None:
     with (
         simulate() as sim,
         pytest.raises(rs.UndeclaredError, match="no slot rawio:input; add module rawio to the context"),

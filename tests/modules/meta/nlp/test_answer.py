@@ -44,7 +44,7 @@ words = st.sampled_from(
 
 
 @given(st.lists(words, max_size=60).map(" ".join) | st.text(max_size=100))
-def test_every_text_has_one_of_six_values(text: str) -> None:
+def test_every_text_has_one_of_six_meanings(text: str) -> None:
     assert yesno_of(text) in MEANINGS
 
 
@@ -72,7 +72,7 @@ def test_common_answers_need_no_sentence_model(text: str, meaning: YesNo, monkey
     assert yesno_of(text) == meaning
 
 
-def test_no_example_of_an_answer_is_also_an_example_of_another_sentence() -> None:
+def test_no_example_of_an_answer_is_also_an_example_of_a_sentence_that_is_no_answer() -> None:
     answers = {plain(text) for texts in bundled("answers").classes.values() for text in texts}
     assert answers.isdisjoint(map(plain, (*bundled("answers").none, *bundled("none").none)))
 

@@ -1,4 +1,4 @@
-"""The parts of a statement. The quality set ``flags_rows`` measures how well its flags are found."""
+"""The parts of a statement. The quality set ``flags_rows`` measures how well flags such as `hearsay` are found."""
 
 from __future__ import annotations
 
@@ -11,7 +11,7 @@ def said(reader: Pipeline, text: str) -> list[Statement]:
     return list(statements_of(*reader.read(text)))
 
 
-def test_a_report_after_a_statement_makes_it_hearsay(reader: Pipeline) -> None:
+def test_a_statement_with_my_mother_says_after_it_is_hearsay(reader: Pipeline) -> None:
     first, *_ = said(reader, "I am lazy, my mother says.")
     assert first.hearsay and not first.holds
 

@@ -1,4 +1,4 @@
-"""`blocked` forbids one thread to import a package. `postponed` delays an import until a call."""
+"""`blocked` keeps one thread from importing a package. `postponed` delays an import until a function is called."""
 
 import importlib
 import sys

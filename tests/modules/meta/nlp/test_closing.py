@@ -22,7 +22,7 @@ def test_a_remark_before_a_question_leaves_the_question_to_be_answered(remark: s
 
 
 @pytest.mark.parametrize("told", ["My cat is called Biscuit.", "I had a terrible day.", "I'm nine."])
-def test_a_sentence_that_tells_something_is_no_remark(told: str) -> None:
+def test_a_sentence_that_tells_the_agent_something_is_not_a_remark(told: str) -> None:
     found = closing(f"{told} Do you have pets?")
     assert found is not None
     assert not found.remarks
@@ -38,7 +38,7 @@ def test_a_sentence_that_tells_something_is_no_remark(told: str) -> None:
         "",
     ],
 )
-def test_a_question_that_needs_the_words_before_it_is_not_cut_off(text: str) -> None:
+def test_a_question_that_stands_alone_or_needs_the_words_before_it_is_not_separated(text: str) -> None:
     assert closing(text) is None
 
 
@@ -52,7 +52,7 @@ def test_a_question_that_needs_the_words_before_it_is_not_cut_off(text: str) -> 
         ("I'm from Leeds. What about you?", "Are you from Leeds?"),
     ],
 )
-def test_and_you_asks_what_the_user_has_just_said(text: str, asked: str) -> None:
+def test_and_you_becomes_a_question_about_what_the_user_has_just_said(text: str, asked: str) -> None:
     found = closing(text)
     assert found is not None
     assert found.returned
@@ -63,7 +63,7 @@ def test_a_long_text_is_not_reduced_to_its_last_question() -> None:
     assert closing("Nice. " * MOST + "How old are you?") is None
 
 
-def test_a_word_of_the_question_itself_is_not_outweighed() -> None:
+def test_a_question_outweighs_the_remark_before_it_but_not_itself() -> None:
     found = closing("Cool story. Who wrote Hamlet?")
     assert found is not None
     assert found.outweighs("Cool story.")

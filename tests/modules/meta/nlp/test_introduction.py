@@ -1,4 +1,4 @@
-"""One reading of introductions serves all modules: it gives the name, and the rest of the utterance."""
+"""Introductions: the name that an utterance gives, and the rest of the utterance."""
 
 import pytest
 
@@ -18,7 +18,7 @@ from ravestate.modules.meta.nlp.pipeline import Pipeline
         ("My name is Ada from Rome. I had a long day.", "Ada", "I had a long day."),
     ],
 )
-def test_a_name_is_told_beside_something_else(text: str, name: str, rest: str, reader: Pipeline) -> None:
+def test_a_user_can_say_their_name_and_something_else(text: str, name: str, rest: str, reader: Pipeline) -> None:
     found = analyse(text, reader).introduction
     assert found is not None
     assert (found.name, found.rest) == (name, rest)
@@ -27,7 +27,7 @@ def test_a_name_is_told_beside_something_else(text: str, name: str, rest: str, r
 @pytest.mark.parametrize(
     "text", ["I'm Anna", "I'm tired. I had a long day.", "this is nice. i had a long day", "hello"]
 )
-def test_other_utterances_are_no_introductions_beside_something_else(text: str, reader: Pipeline) -> None:
+def test_an_utterance_without_a_name_or_without_anything_else_has_no_introduction(text: str, reader: Pipeline) -> None:
     assert analyse(text, reader).introduction is None
 
 
@@ -41,11 +41,11 @@ def test_other_utterances_are_no_introductions_beside_something_else(text: str, 
         ("it's Ilka by the way", "Ilka"),
     ],
 )
-def test_the_words_in_the_place_of_a_name_are_found(text: str, name: str, reader: Pipeline) -> None:
+def test_the_word_in_the_place_of_a_name_is_found(text: str, name: str, reader: Pipeline) -> None:
     assert [one.name for one in introductions_in(reader.read(text)[0])][:1] == [name]
 
 
-def test_words_that_may_point_at_something_else_are_marked(reader: Pipeline) -> None:
+def test_a_name_that_may_belong_to_something_else_is_marked_as_unsure(reader: Pipeline) -> None:
     (found,) = introductions_in(reader.read("my dog isn't Rex, it's Max")[0])
     assert found.pointing and found.late and not found.sure
     (found,) = introductions_in(reader.read("I'm Max")[0])

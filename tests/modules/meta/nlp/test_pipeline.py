@@ -46,7 +46,7 @@ def test_a_pipeline_of_another_language_reads_the_text_as_typed(tmp_path: Path) 
     assert Pipeline(str(tmp_path / "blank")).normalise("im haus").text == "im haus"
 
 
-def test_like_is_a_verb_and_keeps_its_lemma(reader: Pipeline) -> None:
+def test_the_word_like_is_a_verb_and_keeps_its_lemma(reader: Pipeline) -> None:
     tree, _ = reader.read("Tom and Anna like games.")
     (like,) = [word for word in tree.words if word.text == "like"]
     assert (like.lemma, like.pos) == ("like", "VERB")
@@ -111,7 +111,7 @@ def test_readers_in_new_contexts_do_not_look_for_a_backend_again(
     assert not looked
 
 
-def test_load_does_not_wait_for_readers_of_a_loaded_pipeline(reader: Pipeline) -> None:
+def test_loading_a_loaded_pipeline_does_not_wait_for_threads_that_read(reader: Pipeline) -> None:
     reader.load()
     asking = threading.Thread(target=reader.load, daemon=True)
     with reader._lock:  # a reader holds the lock
@@ -132,7 +132,7 @@ SAID = (
 
 @pytest.fixture
 def crowd(reader: Pipeline) -> Callable[[], list[Any]]:
-    """A function that reads each text of `SAID` in a separate thread, and returns their results and errors."""
+    """Return a function that reads each text of `SAID` in a separate thread, and returns the results and errors."""
 
     def ask() -> list[Any]:
         found: list[Any] = [None] * len(SAID)

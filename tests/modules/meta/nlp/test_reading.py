@@ -74,7 +74,7 @@ def test_the_slots_are_filled_from_the_reading_of_the_model() -> None:
     assert model.closed
 
 
-def test_a_question_that_the_model_finds_raises_is_question() -> None:
+def test_a_question_that_the_model_finds_raises_the_signal_is_question() -> None:
     module = rs.Module("test", requires=[nlp])
 
     @module.rule(when=nlp.is_question)

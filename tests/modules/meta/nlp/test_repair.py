@@ -168,7 +168,7 @@ def test_contrasts_are_found_in_texts_without_a_verb_as_well(
 @example(["dog", ","]).via("a comma with nothing after it")
 @example(["that", "'s", "misty", "outside", ",", "not", "sunny"]).via("once a tree with a circle")
 @settings(max_examples=200, deadline=None)
-def test_the_words_of_any_repaired_tree_have_a_root_above_them(words: list[str]) -> None:
+def test_every_word_of_a_repaired_tree_leads_to_a_root(words: list[str]) -> None:
     tree = repaired(pipeline("").read(" ".join(words))[0])
     for word in tree.words:
         above = [word, *islice(tree.ancestors(word), len(tree.words))]
@@ -177,7 +177,7 @@ def test_the_words_of_any_repaired_tree_have_a_root_above_them(words: list[str])
 
 
 @pytest.mark.parametrize("text", ["my name not tom", "why not pizza", "not now", "I live in Rome, not all the time"])
-def test_other_negations_are_no_contrasts(text: str, reader: Pipeline) -> None:
+def test_a_negation_that_names_no_alternative_is_not_a_contrast(text: str, reader: Pipeline) -> None:
     assert contrasts_of(repaired(reader.read(text)[0])) == ()
 
 

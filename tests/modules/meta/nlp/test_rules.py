@@ -68,7 +68,7 @@ def test_the_analysis_is_one_record_with_acts_feelings_and_statements() -> None:
 
 
 def texts_written(first: str, second: str) -> list[Any]:
-    """Return the values of `nlp.text` after two utterances at the same time."""
+    """Return the values that are written to `nlp.text` for two utterances at the same time."""
     with simulate(nlp) as sim:
         sim.context.put(rawio.input, first)
         sim.context.put(rawio.input, second)
@@ -83,7 +83,7 @@ def test_utterances_keep_their_order_before_the_analysis_begins(monkeypatch: pyt
     def prepare(*rest: Any) -> None:
         calls.append(len(calls))
         if calls == [0]:
-            later.wait(0.2)  # by now the second utterance would have been analysed if it did not wait for the first
+            later.wait(0.2)  # long enough to analyse the second utterance, if it did not wait for the first
 
     def read(text: str, *rest: Any) -> Any:
         later.set()
@@ -101,7 +101,7 @@ def test_simultaneous_utterances_are_analysed_in_order(
 
     def read(text: str, *rest: Any) -> Any:
         if text == "I live in Ulm.":
-            later.wait(0.2)  # without waiting for the first analysis, the second would have ended by now
+            later.wait(0.2)  # long enough to analyse the second utterance, if it did not wait for the first
         else:
             later.set()
         return analyse(text, *rest)
@@ -171,7 +171,7 @@ def test_a_setting_gives_the_names_of_the_agent() -> None:
             assert sim.read(heard) is expected, text
 
 
-def test_a_rule_that_hears_one_signal_finds_all_slots_written() -> None:
+def test_a_rule_on_one_signal_of_nlp_can_read_all_slots_of_nlp() -> None:
     module = rs.Module("reader", requires=[nlp])
     seen: list[Any] = []
 
@@ -258,7 +258,7 @@ def test_loading_begins_at_startup_and_counts_as_no_activity(monkeypatch: pytest
         assert sim.read(rs.activity) is False
 
 
-def test_nothing_heavy_is_imported_with_the_module() -> None:
+def test_importing_the_module_imports_no_heavy_library() -> None:
     code = "import sys; from ravestate.modules import nlp; print('spacy' in sys.modules, 'numpy' in sys.modules)"
     done = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=True)
     assert done.stdout == "False False\n"

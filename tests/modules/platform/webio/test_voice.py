@@ -202,7 +202,7 @@ async def test_a_line_that_the_agent_closes_is_replaced_when_the_microphone_goes
 
 
 @in_virtual_time
-async def test_turning_the_microphone_on_in_a_window_turns_it_off_in_the_other() -> None:
+async def test_turning_the_microphone_on_in_one_window_turns_it_off_in_the_other() -> None:
     async with calling() as (app, caller), Caller(app) as second:
         await second.call(session=caller.session)
         assert await caller.until("taken") == {"type": "taken", "text": "the microphone is on in another window"}

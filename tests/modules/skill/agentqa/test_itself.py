@@ -77,7 +77,7 @@ def test_facts_come_from_memory_in_the_order_of_the_life_file(with_memory: Any) 
         await memory.relate(node, "friend_of", await memory.ensure("Person", name="Ada"))
         facts = await recall(LIFE, memory)
         assert facts["hobbies"] == ("chess", "art", "juggling")
-        assert facts["friends"] == ("Ada",)  # not in the file
+        assert facts["friends"] == ("Ada",)  # only in memory, not in the life file
         assert facts["wheels"] == "3" and facts["siblings"] == ()
 
     with_memory(use)

@@ -116,7 +116,7 @@ def test_the_built_in_life_is_complete_and_repeats_no_question() -> None:
     assert len(questions) == len(set(questions))
 
 
-def test_a_life_file_can_add_remarks_to_a_topic_or_as_a_new_topic(tmp_path: Path) -> None:
+def test_a_life_file_can_add_remarks_to_a_known_topic_or_in_a_new_topic(tmp_path: Path) -> None:
     life = life_of(
         "topics: {distress: {remarks: rain again}, praise: {remarks: [well done], phrases: Thanks.}}", tmp_path
     )

@@ -33,7 +33,7 @@ def test_the_gravest_of_several_remarks_counts() -> None:
 
 
 @pytest.mark.parametrize("text", ["please don't stay silent", "do not shut up, I like it", "I never told you to hush"])
-def test_the_opposite_of_a_wish_for_quiet_does_not_count_as_one(text: str) -> None:
+def test_the_opposite_of_a_wish_for_quiet_is_not_taken_for_such_a_wish(text: str) -> None:
     bundled_matcher("acts").load()
     assert "quiet" not in acts(heard(text))
 
@@ -55,5 +55,5 @@ def test_a_mild_insult_beside_a_question_is_ignored_unless_it_names_the_agent() 
 
 
 @pytest.mark.parametrize("text", ["ok. bus 12 or 15 for the station?", "okay okay. who would be king of the moon?"])
-def test_okay_before_a_question_does_not_count_as_how_are_you(router: Router, text: str) -> None:
+def test_a_question_that_begins_with_okay_is_not_taken_for_how_are_you(router: Router, text: str) -> None:
     assert isinstance(router.route(text, question=True), Miss)

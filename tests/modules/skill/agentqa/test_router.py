@@ -92,7 +92,9 @@ def test_the_error_about_a_missing_model_names_its_file(tmp_path: Path) -> None:
         ("do you ever fall ill?", "health"),
     ],
 )
-def test_greetings_and_questions_about_its_nature_are_not_taken_for_how_are_you(text: str, topic: str | None) -> None:
+def test_greetings_and_questions_about_the_agents_nature_are_not_taken_for_how_are_you(
+    text: str, topic: str | None
+) -> None:
     router = Router(read_life())
     router.load()
     found = router.route(text, question="?" in text)

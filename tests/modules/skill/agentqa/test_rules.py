@@ -214,16 +214,16 @@ def test_the_agent_tells_the_time_and_the_date_of_its_clock(tmp_path: Path) -> N
         ("What do you do in your free time?", "sailing, and you", "hobbies"),
     ],
 )
-def test_the_user_can_return_the_agents_question(question: str, answer: str, topic: str, tmp_path: Path) -> None:
+def test_the_user_can_answer_a_question_and_ask_it_back(question: str, answer: str, topic: str, tmp_path: Path) -> None:
     own = f"topics: {{{topic}: {{phrases: 'This is my {topic}. And yours?'}}}}"
     with start(tmp_path, chatter, encyclopaedia, own=own) as sim:
         sim.put(rawio.output, question)
         assert (
             say(sim, answer) == f"This is my {topic}."
-        )  # without "And yours?", because the user has already answered this
+        )  # without "And yours?", because the user has already answered this question
 
 
-def test_and_you_without_an_earlier_question_is_left_to_other_modules(tmp_path: Path) -> None:
+def test_the_words_and_you_without_an_earlier_question_are_left_to_other_modules(tmp_path: Path) -> None:
     with start(tmp_path, chatter) as sim:
         assert say(sim, "and you") == "chatter"
 
@@ -308,7 +308,9 @@ def test_without_memory_answers_come_from_the_life_file(tmp_path: Path, caplog: 
         assert say(sim, "who are your friends") == "Ada"
         assert sim.failures == []
     told = [record for record in caplog.records if record.levelno >= logging.WARNING]
-    assert [record.name for record in told] == ["ravestate.ontology.open_up"]  # only ontology logs it, and only once
+    assert [record.name for record in told] == [
+        "ravestate.ontology.open_up"
+    ]  # only ontology logs the error, and only once
 
 
 def test_agentqa_still_answers_after_memory_has_failed(tmp_path: Path) -> None:
@@ -320,7 +322,7 @@ def test_agentqa_still_answers_after_memory_has_failed(tmp_path: Path) -> None:
         assert say(sim, "who are your friends") == "Ada"
 
 
-def test_without_the_sentence_model_other_modules_answer_and_an_error_names_it(
+def test_without_the_sentence_model_other_modules_answer_and_an_error_names_the_missing_file(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     from ravestate.modules.skill.agentqa import rules

@@ -35,7 +35,9 @@ def test_an_answer_has_a_source_and_a_confidence(collection: Answerer) -> None:
     "heard",
     ["Will it rain today?", "What is your name?", "What is the best country?", "Is it?", "what " * 20_000],
 )
-def test_questions_not_about_the_world_get_a_reason_instead_of_an_answer(collection: Answerer, heard: str) -> None:
+def test_questions_that_are_not_about_the_world_get_a_reason_instead_of_an_answer(
+    collection: Answerer, heard: str
+) -> None:
     answer = collection.answer(heard)
     assert answer.text == ""
     assert answer.reason
@@ -53,7 +55,7 @@ def test_questions_beyond_the_documents_get_no_sure_answer(collection: Answerer,
     assert collection.answer(heard).confidence < Settings().unsure
 
 
-def test_most_questions_of_the_calibration_are_answered_right(collection: Answerer) -> None:
+def test_most_questions_of_the_calibration_set_are_answered_right(collection: Answerer) -> None:
     """At least 90 % of the answerable questions are answered right, and at most 5 % of the sure answers are wrong.
 
     The test asks only every third question.

@@ -1,4 +1,4 @@
-"""Files and folders are indexed file by file, and only if they have changed."""
+"""Only new and changed files are indexed, one after another."""
 
 import os
 import signal

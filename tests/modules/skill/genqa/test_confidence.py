@@ -1,4 +1,4 @@
-"""Confidence is a probability that grows with the evidence for an answer."""
+"""The confidence in an answer is a probability that grows with the evidence for the answer."""
 
 from hypothesis import given
 from hypothesis import strategies as st

@@ -1,4 +1,4 @@
-"""In a conversation, answers fit the qualifiers of a question, compare things, and choose between readings."""
+"""Questions with qualifiers (such as "the second woman"), comparisons, sums, and follow-up questions."""
 
 from collections.abc import Iterator
 
@@ -33,7 +33,7 @@ def answerer(tmp_path_factory: pytest.TempPathFactory) -> Iterator[Answerer]:
 
 
 def ask(answerer: Answerer, *said: str) -> str:
-    """Say these texts, and return the reply to the last one; empty for silence."""
+    """Say these texts, and return the reply to the last one, or an empty text if there is no reply."""
     thread: list[Turn] = []
     text = ""
     for heard in said:
@@ -83,7 +83,7 @@ def test_a_question_is_answered_if_a_passage_fits_its_qualifier(answerer: Answer
         (["How old was Ida Falk when she died?"], "From 3 May 1900 to 9 June 1985 it is 85 years."),
     ],
 )
-def test_numbers_with_units_and_dates_are_compared(answerer: Answerer, said: list[str], begins: str) -> None:
+def test_amounts_and_dates_are_compared(answerer: Answerer, said: list[str], begins: str) -> None:
     assert ask(answerer, *said).startswith(begins)
 
 
@@ -102,7 +102,7 @@ def test_a_sum_can_refer_to_earlier_answers(answerer: Answerer, said: list[str],
 
 
 @pytest.mark.parametrize("follow", ["and Lake Sill?", "how old is it?", "who founded it?", "why?", "really?"])
-def test_a_follow_up_gets_no_answer_if_the_documents_have_none_of_its_kind(answerer: Answerer, follow: str) -> None:
+def test_a_follow_up_gets_no_answer_if_no_document_has_the_fact(answerer: Answerer, follow: str) -> None:
     assert ask(answerer, "How deep is Lake Orm?", follow) == ""
 
 
@@ -136,7 +136,7 @@ def test_a_question_about_the_agents_age_causes_no_search(answerer: Answerer, mo
 
 
 def thread_of(answerer: Answerer, question: str) -> Turn:
-    """Return the turn of a question with its answer."""
+    """Return the turn (a question and its answer) that a question adds to the thread."""
     _, turn = answer_in(answerer, parse(question), [], Settings(), 0.0)
     assert turn is not None
     return turn

@@ -88,7 +88,7 @@ def test_a_forgotten_file_leaves_nothing_in_the_index(index: Index) -> None:
     assert (index.size(), list(index.files()), index.frequencies(["tram"])) == (0, [], {})
 
 
-def test_frequencies_count_stems(index: Index) -> None:
+def test_frequencies_are_counted_for_stems(index: Index) -> None:
     index.put(file(), notes("Trams go there.", "A tram is red.", "A bus is blue."))
     assert index.frequencies(["tram", "bu", "ship"]) == {"tram": 2, "bu": 1}
 
@@ -183,7 +183,7 @@ def test_an_index_that_cannot_be_written_is_reported(index: Index) -> None:
     assert found(index, "tram") == ["The tram is red."]
 
 
-def test_a_writer_that_waits_too_long_for_another_writer_reports_it(index: Index) -> None:
+def test_a_writer_that_waits_too_long_for_another_writer_raises_an_error(index: Index) -> None:
     def meanwhile() -> Iterator[Document]:
         with (
             Index(index.path, timeout=0.0) as other,

@@ -245,7 +245,7 @@ def entry(title: str, content: str, mimetype: str = "text/html", redirect: bool 
 
 @pytest.fixture
 def archive(monkeypatch: pytest.MonkeyPatch) -> list[SimpleNamespace]:
-    """The entries of each archive that the stand-in for libzim opens. libzim is under the GPL and not installed."""
+    """The entries of each archive that the stand-in for libzim opens. libzim is not installed, because it is under the GPL."""
     entries: list[SimpleNamespace] = []
 
     class Archive:

@@ -89,7 +89,7 @@ def test_a_question_without_a_verb_is_answered_if_the_answer_is_sure(settings: d
             assert answer in sim.said[-1], text
 
 
-def test_for_a_while_a_question_can_refer_to_the_previous_question(settings: dict[str, dict[str, Any]]) -> None:
+def test_a_question_can_refer_to_the_previous_question_for_a_limited_time(settings: dict[str, dict[str, Any]]) -> None:
     with simulate(genqa, talk, settings=settings) as sim:
         for text, answer in (
             ("And its capital?", "Hm."),
@@ -145,7 +145,7 @@ def test_below_the_threshold_of_confidence_other_modules_answer(settings: dict[s
         assert "only 'The capital of Peru is Lima.'" in str(sim.explain("genqa:find"))
 
 
-def test_general_knowledge_is_said_without_a_source_which_the_thread_keeps(
+def test_an_answer_from_general_knowledge_names_no_source_but_the_thread_keeps_the_source(
     settings: dict[str, dict[str, Any]],
 ) -> None:
     with simulate(genqa, talk, settings=settings) as sim:
@@ -166,7 +166,7 @@ def test_general_knowledge_is_said_without_a_source_which_the_thread_keeps(
         ("Can you sing a song?", "Hm."),
     ],
 )
-def test_fillers_and_a_you_that_means_anybody_are_understood(
+def test_filler_words_and_an_impersonal_you_are_understood(
     text: str, answer: str, settings: dict[str, dict[str, Any]]
 ) -> None:
     with simulate(genqa, talk, settings=settings) as sim:
@@ -306,7 +306,9 @@ def test_an_injection_has_no_effect_even_if_the_model_obeys_it(tmp_path: Path) -
     assert "Mira Kolm" in said[0]
 
 
-def test_wording_by_a_model_without_a_model_in_the_agent_is_reported(settings: dict[str, dict[str, Any]]) -> None:
+def test_a_setting_that_lets_a_model_word_answers_is_reported_if_the_agent_has_no_model(
+    settings: dict[str, dict[str, Any]],
+) -> None:
     settings["genqa"] |= {"wording": "model"}
     with simulate(genqa, talk, settings=settings) as sim:
         ((rule, error),) = sim.failures

@@ -1,4 +1,4 @@
-"""The module's stems equal the stems that the index's own tokenizer makes."""
+"""The stems of the module equal those that the tokenizer of the index makes."""
 
 import sqlite3
 

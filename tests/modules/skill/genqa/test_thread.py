@@ -42,7 +42,7 @@ def test_the_readings_of_a_follow_up_include_the_intended_one(
 
 
 @pytest.mark.parametrize("follow", ["when was he born?", "who was his wife?"])
-def test_a_pronoun_first_refers_to_a_person_in_the_last_answer(follow: str) -> None:
+def test_the_first_reading_of_a_pronoun_is_the_person_in_the_last_answer(follow: str) -> None:
     assert "Hugo Aster" in readings(parse(follow), talk(HUSBAND))[0].text
 
 
@@ -59,11 +59,11 @@ def test_a_complete_question_is_not_changed(heard: str) -> None:
 
 
 @pytest.mark.parametrize("heard", ["", "?", "there " * LONGEST])
-def test_any_text_has_a_limited_number_of_readings(heard: str) -> None:
+def test_every_text_has_a_limited_number_of_readings(heard: str) -> None:
     assert len(readings(parse(heard), talk(KESH))) <= 20
 
 
-def test_a_question_without_a_name_is_first_about_the_current_subject() -> None:
+def test_the_first_reading_of_a_question_without_a_name_is_about_the_current_subject() -> None:
     first, *_ = readings(
         parse("who was on board?"), talk(("When did the Marlow sink?", "The Marlow sank.", "The Marlow"))
     )
@@ -91,15 +91,15 @@ def test_a_fragment_can_be_completed_from_an_older_question() -> None:
 
 
 @pytest.mark.parametrize("follow", ["who was he?", "where is it?", "when was that?"])
-def test_a_question_word_with_a_pronoun_has_readings(follow: str) -> None:
+def test_a_question_of_a_question_word_and_a_pronoun_has_readings(follow: str) -> None:
     assert readings(parse(follow), talk(HUSBAND))
 
 
-def test_after_a_question_what_something_is_a_pronoun_refers_to_this_thing() -> None:
+def test_a_pronoun_refers_to_the_thing_in_the_question_before() -> None:
     turns = talk(("What is Okapia?", "Okapia is a board game.", "Okapia"))
     assert [reading.about for reading in readings(parse("who invented it?"), turns)] == ["Okapia"]
 
 
-def test_after_a_question_who_someone_is_a_pronoun_refers_to_this_person() -> None:
+def test_a_pronoun_refers_to_the_animal_in_the_question_before() -> None:
     turns = talk(("who is bertha", "Bertha is a giant tortoise in Willowbrook Zoo.", "Bertha"))
     assert readings(parse("when did she come to the zoo?"), turns)[0].text == "when did Bertha come to the zoo?"

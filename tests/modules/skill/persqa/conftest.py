@@ -1,4 +1,4 @@
-"""One pipeline for all tests, and a memory for each."""
+"""A pipeline that all tests share, and a memory file for each test."""
 
 from __future__ import annotations
 
@@ -34,7 +34,10 @@ def file(tmp_path: Path) -> Path:
 
 @pytest.fixture
 def look(file: Path) -> Look:
-    """Return a function for the people in memory: name → relation → names at its end. Call it while no agent runs."""
+    """Return a function that returns the people in memory: name → relation → names of the related nodes.
+
+    Call this function only while no agent runs.
+    """
 
     def people() -> dict[str, Any]:
         memory = open_memory(ontology.Settings(path=file))

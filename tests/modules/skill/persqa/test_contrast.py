@@ -1,4 +1,4 @@
-"""A correction finds the fact whose value it calls wrong, whenever the fact was mentioned."""
+"""A correction such as "Leipzig, not Leeds" changes the fact with the wrong value, even if other talk came between."""
 
 from __future__ import annotations
 
@@ -32,7 +32,7 @@ def meaning(text: str, known: Facts, talk: Talk | None = None, told: tuple[Told,
 
 
 def after(text: str, known: Facts = ADA, talk: Talk | None = None) -> dict[str, tuple[str, ...]]:
-    """Return the facts that differ after an utterance."""
+    """Return the facts that an utterance changes, with their new values."""
     found = meaning(text, known, talk)
     now = {**learn(known, found.facts).facts} if found.kind in ("told", "corrected") else dict(known)
     now[NAME] = next((one.values for one in found.facts if one.topic == NAME and not one.gone), known.get(NAME, ()))
@@ -70,9 +70,7 @@ def after(text: str, known: Facts = ADA, talk: Talk | None = None) -> dict[str, 
         ("ida, not ada", "name", ("Ida",)),
     ],
 )
-def test_a_correction_changes_the_fact_whose_value_it_calls_wrong(
-    text: str, topic: str, values: tuple[str, ...]
-) -> None:
+def test_a_correction_changes_the_fact_that_has_the_wrong_value(text: str, topic: str, values: tuple[str, ...]) -> None:
     assert after(text) == {topic: values}
 
 
@@ -93,22 +91,22 @@ def test_a_correction_changes_the_fact_whose_value_it_calls_wrong(
         "I'm not just 15",
     ],
 )
-def test_a_contrast_of_other_things_changes_nothing(text: str) -> None:
+def test_a_contrast_that_concerns_no_fact_changes_nothing(text: str) -> None:
     assert after(text) == {}
 
 
-def test_a_value_of_two_facts_is_corrected_only_in_the_fact_just_mentioned() -> None:
+def test_a_wrong_value_of_two_facts_is_corrected_only_in_the_fact_mentioned_last() -> None:
     both = {"home": ("Leeds",), "birthplace": ("Leeds",)}
     assert after("Hull, not Leeds", both) == {}
     assert after("Hull, not Leeds", both, Talk().mentioning("birthplace", ("Leeds",))) == {"birthplace": ("Hull",)}
     assert after("I was born in Hull, not Leeds", both) == {"birthplace": ("Hull",)}
 
 
-def test_without_a_wrong_value_the_only_fact_of_that_kind_is_corrected() -> None:
+def test_a_correction_without_the_wrong_value_changes_the_only_fact_of_its_kind() -> None:
     two = {"home": ("Leeds",), "origin": ("Ghana",), "age": ("15",)}
     assert after("no, York", two) == {}
     assert after("no, 16", two) == {"age": ("16",)}
-    asking = Talk().speaking("Where was the game?")  # another module asks
+    asking = Talk().speaking("Where was the game?")  # the last question is another module's
     assert after("no, York", ADA, asking) == {}
 
 
@@ -121,11 +119,11 @@ def test_words_of_another_kind_do_not_replace_the_fact_mentioned_last(text: str)
 
 
 @pytest.mark.parametrize("text", ["oh boy", "wrong guy", "no brothers", "sorry, her name is Dina"])
-def test_words_that_suit_no_single_fact_change_nothing(text: str) -> None:
+def test_words_that_fit_none_or_several_facts_change_nothing(text: str) -> None:
     assert after(text, {**ADA, "mother": ("Anna",)}) == {}
 
 
-def test_a_relative_of_another_is_not_the_users() -> None:
+def test_another_persons_relative_is_not_the_users_relative() -> None:
     assert after("Nora is my brother's wife, not my sister") == {"sister": ()}
     assert after("nora is my brothers wife not my sister") == {"sister": ()}
 
@@ -164,7 +162,7 @@ def test_a_corrected_statement_is_recalled_and_saved(file: Path, look: Look) -> 
     assert look()["Ada"]["has_told"] == ["your sister Rosa lives in Ghent"]
 
 
-def test_a_fact_that_another_module_mentions_may_be_corrected(file: Path) -> None:
+def test_a_fact_that_another_module_has_mentioned_can_be_corrected(file: Path) -> None:
     module = rs.Module("fan", requires=[rawio])
 
     @module.rule(when=rawio.input.changed, writes=rawio.output, weight=9.0)

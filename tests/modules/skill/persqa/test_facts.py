@@ -1,4 +1,4 @@
-"""Facts of every topic are recalled, corrected and forgotten; nothing is made up."""
+"""The agent recalls, corrects and forgets facts of every topic, and makes nothing up."""
 
 from __future__ import annotations
 
@@ -26,7 +26,7 @@ TOLD: list[tuple[str, str, str]] = [
 
 
 @pytest.mark.parametrize(("told", "question", "answer"), TOLD, ids=[told for told, _, _ in TOLD])
-def test_a_fact_is_recalled_now_and_another_day_and_forgotten(
+def test_a_fact_is_recalled_in_this_and_a_later_session_and_can_be_forgotten(
     file: Path, told: str, question: str, answer: str
 ) -> None:
     with agent(file) as sim:
@@ -85,11 +85,11 @@ def test_facts_of_different_kinds_are_kept_side_by_side(file: Path, look: Look) 
     assert look()["Nia"]["sibling_of"] == ["Kim", "Kim"]
 
 
-def test_a_birthplace_answers_the_question_for_the_origin(file: Path) -> None:
+def test_a_birthplace_is_an_answer_to_where_are_you_from(file: Path) -> None:
     with agent(file, topics=["origin"]) as sim:
         assert asked(sim) == "origin"
         sim.say("I was born in Dundee")
-        assert answers(sim, "trains") == "I see."  # nothing is asked any more
+        assert answers(sim, "trains") == "I see."  # the agent no longer waits for an answer
         before = len(sim.said)
         sim.advance(100.0)
         assert len(sim.said) == before
@@ -117,7 +117,7 @@ def test_a_denied_occupation_is_removed(file: Path, look: Look) -> None:
 
 
 @pytest.mark.parametrize("question", ["who is my sister?", "what is my favourite food?", "how old am I?"])
-def test_the_agent_asks_back_for_unknown_facts(file: Path, question: str) -> None:
+def test_the_agent_asks_the_user_for_a_fact_that_it_cannot_recall(file: Path, question: str) -> None:
     with agent(file, knower()) as sim:
         assert meant(answers(sim, question), "recall_unknown")
         assert meant(answers(sim, "36" if "old" in question else "Emma"), "learned")
@@ -135,7 +135,7 @@ def test_the_agent_asks_back_for_unknown_facts(file: Path, question: str) -> Non
         "do I speak French?",
     ],
 )
-def test_unknowable_facts_are_not_made_up(file: Path, question: str) -> None:
+def test_facts_that_the_agent_cannot_know_are_not_made_up(file: Path, question: str) -> None:
     with agent(file, knower()) as sim:
         assert meant(answers(sim, question), "recall_not")
 
@@ -167,7 +167,7 @@ def test_unknown_facts_cannot_be_forgotten(file: Path, what: str) -> None:
 
 
 @pytest.mark.parametrize("text", ["forget where I live", "I don't live there any more", "I live in Bremen"])
-def test_the_user_is_not_reminded_of_a_fact_that_has_ended(file: Path, text: str) -> None:
+def test_the_user_is_not_reminded_of_a_fact_that_no_longer_holds(file: Path, text: str) -> None:
     with agent(file) as sim:
         sim.say("my name is ada and i live in ulm")
     with agent(file, topics=[]) as sim:
@@ -178,14 +178,14 @@ def test_the_user_is_not_reminded_of_a_fact_that_has_ended(file: Path, text: str
         assert len(sim.said) == before and sim.failures == []
 
 
-def test_replaced_facts_leave_memory(file: Path) -> None:
+def test_replaced_facts_and_forgotten_people_leave_no_node_in_memory(file: Path) -> None:
     with agent(file) as sim:
         for text in ("I'm called Nia", "I live in Dundee", "no, in Fife", "forget me", "yes"):
             sim.say(text)
     assert everything(file) == set()
 
 
-def test_nodes_that_others_use_stay(file: Path) -> None:
+def test_a_node_to_which_another_person_is_related_stays_in_memory(file: Path) -> None:
     with agent(file) as sim:
         for text in ("I'm called Bob", "I live in Dundee"):
             sim.say(text)
@@ -201,11 +201,11 @@ def test_the_agent_asks_for_the_name_of_a_relative(file: Path, look: Look, told:
         sim.say("my name is ada")
         assert meant(answers(sim, told), "ask_relative")
         assert meant(answers(sim, "they are called Max and Tom"), "learned")
-        assert answers(sim, told) == "I see."  # they are known
+        assert answers(sim, told) == "I see."  # the agent knows the brothers
     assert look()["Ada"] == {"sibling_of": ["Max", "Tom"]}
 
 
-def test_a_job_that_was_quit_is_spoken_of_as_a_job(file: Path) -> None:
+def test_after_the_user_quits_their_job_the_agent_says_that_they_have_no_job(file: Path) -> None:
     with agent(file) as sim:
         sim.say("I work as a waiter")
         sim.say("I quit my job")

@@ -1,4 +1,4 @@
-"""Forgetting a person: the agent's answers, and the effect on its memory and on other modules."""
+"""Forgetting a person: the agent's answers, and the effects on memory and on other modules."""
 
 from __future__ import annotations
 
@@ -34,7 +34,7 @@ def test_nothing_of_a_forgotten_person_stays_on_disk(file: Path) -> None:
     assert not any(word in left for word in (b"Zwentibold", b"Quakenbrueck", b"Ermintrude", b"basilisk"))
 
 
-def test_the_agent_asks_whom_to_forget_when_nobody_is_recognised(file: Path, look: Look) -> None:
+def test_the_agent_asks_whom_to_forget_if_it_has_not_recognised_the_user(file: Path, look: Look) -> None:
     with agent(file) as sim:
         sim.say("my name is ada and i live in hannover")
     with agent(file, confirm=True) as sim:
@@ -55,7 +55,7 @@ def test_a_user_cannot_make_the_agent_forget_another_person(file: Path, look: Lo
     assert look()["Ada"] == {"lives_in": ["Hannover"]}
 
 
-def test_other_modules_hear_that_somebody_was_forgotten(file: Path) -> None:
+def test_other_modules_learn_that_a_person_was_forgotten(file: Path) -> None:
     import ravestate as rs
 
     listener = rs.Module("listener", requires=[persqa])

@@ -1,4 +1,4 @@
-"""The words around a value tell its topic, although neither the table nor an example has the sentence."""
+"""The words around a value show its topic, even in a sentence that is in no table and no example."""
 
 from __future__ import annotations
 
@@ -15,7 +15,7 @@ from quality.blind import stored
         ("the railway has employed me since May", "employer=the railway"),
     ],
 )
-def test_words_that_are_in_no_table_still_show_the_topic(sentence: str, fact: str) -> None:
+def test_the_topic_of_a_value_is_found_in_a_sentence_that_is_in_no_table(sentence: str, fact: str) -> None:
     assert fact in stored(sentence)
 
 

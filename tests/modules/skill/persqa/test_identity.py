@@ -1,4 +1,4 @@
-"""Identity: a user says a name that memory knows, or says that they are that person."""
+"""Identity: a user gives a name that memory knows, or corrects whom the agent takes them for."""
 
 from __future__ import annotations
 
@@ -16,7 +16,7 @@ pytestmark = pytest.mark.usefixtures("reader")
 
 @pytest.fixture
 def ada(file: Path) -> Path:
-    """Return a memory that knows Ada, who lives in Hannover and has a sister."""
+    """Return the file of a memory that knows Ada, who lives in Hannover and has a sister."""
     with agent(file) as sim:
         sim.say("my name is ada and i live in hannover")
         sim.say("my sister is called Emma")
@@ -28,7 +28,7 @@ def name_of(sim: Simulation) -> str | None:
     return None if who is None else who["name"]
 
 
-def test_somebody_who_says_a_known_name_is_asked_something_harmless(ada: Path) -> None:
+def test_a_user_who_gives_a_known_name_is_asked_about_a_harmless_fact(ada: Path) -> None:
     with agent(ada, confirm=True) as sim:
         said = answers(sim, "i'm ada")
         assert meant(said, "vouch_home") and "Hannover" not in said
@@ -38,7 +38,9 @@ def test_somebody_who_says_a_known_name_is_asked_something_harmless(ada: Path) -
 
 
 @pytest.mark.parametrize("text", ["bremen", "i don't know", "none of your business", "no"])
-def test_a_wrong_or_refused_answer_makes_a_new_person_of_the_same_name(ada: Path, look: Look, text: str) -> None:
+def test_after_a_wrong_or_refused_answer_the_user_is_a_new_person_with_the_same_name(
+    ada: Path, look: Look, text: str
+) -> None:
     with agent(ada, confirm=True) as sim:
         sim.say("my name is ada")
         assert meant(answers(sim, text), "namesake")
@@ -60,7 +62,7 @@ def test_a_person_is_recognised_even_if_memory_knows_only_their_name(file: Path,
         assert meant(answers(sim, "hi, kim here"), "back")
 
 
-def test_nothing_leaks_before_the_answer(ada: Path) -> None:
+def test_the_agent_tells_no_facts_before_the_user_has_answered(ada: Path) -> None:
     with agent(ada, confirm=True) as sim:
         sim.say("my name is ada")
         for text in ("where do i live?", "who is my sister?", "what do you know about me?", "do i live in hannover?"):
@@ -68,12 +70,12 @@ def test_nothing_leaks_before_the_answer(ada: Path) -> None:
             assert "Emma" not in said and "you live in Hannover" not in said
 
 
-def test_a_user_who_tells_a_known_fact_needs_no_question(ada: Path) -> None:
+def test_a_user_who_also_tells_a_known_fact_is_recognised_without_a_question(ada: Path) -> None:
     with agent(ada, confirm=True) as sim:
         assert meant(answers(sim, "my name is ada and i live in hannover"), "welcome_back")
 
 
-def test_the_second_of_two_namesakes_is_recognised_by_the_answer(ada: Path) -> None:
+def test_the_answer_decides_which_of_two_namesakes_is_recognised(ada: Path) -> None:
     with agent(ada, confirm=True) as sim:
         sim.say("my name is ada")
         sim.say("bremen")
@@ -84,28 +86,28 @@ def test_the_second_of_two_namesakes_is_recognised_by_the_answer(ada: Path) -> N
         assert "sister" not in sim.read(persqa.facts)
 
 
-def test_a_user_whom_the_platform_recognises_needs_no_question(ada: Path) -> None:
+def test_a_user_whom_the_platform_recognises_is_asked_no_question(ada: Path) -> None:
     with agent(ada, confirm=True) as sim:
         sim.put(interloc.users, {"camera": "Ada"})
         assert "you live in Hannover" in answers(sim, "where do i live?")
 
 
 @pytest.mark.parametrize("text", ["it's me, Marlene", "this is Marlene again", "hello, it is me, marlene"])
-def test_people_say_who_they_are(file: Path, text: str) -> None:
+def test_phrases_such_as_its_me_marlene_give_the_users_name(file: Path, text: str) -> None:
     with agent(file, hibye) as sim:
         sim.say(text)
         assert name_of(sim) == "Marlene"
 
 
 @pytest.mark.parametrize("text", ["guess who", "I'm back"])
-def test_a_user_who_says_that_they_are_back_without_a_name_is_asked_for_it(file: Path, text: str) -> None:
+def test_an_unknown_user_who_says_that_they_are_back_is_asked_for_their_name(file: Path, text: str) -> None:
     with agent(file) as sim:
         assert meant(answers(sim, text), "identify")
         assert meant(answers(sim, "marlene"), "learned_name")
         assert meant(answers(sim, text), "back")
 
 
-def test_a_user_can_say_that_the_agent_takes_them_for_another_person(ada: Path, look: Look) -> None:
+def test_a_user_can_say_that_the_agent_has_mistaken_them_for_another_person(ada: Path, look: Look) -> None:
     with agent(ada) as sim:
         sim.say("i'm called ada")
         sim.say("i work as a baker")
@@ -121,7 +123,9 @@ def test_a_user_can_say_that_the_agent_takes_them_for_another_person(ada: Path, 
     "text",
     ["I am not Ada, that is not me", "I'm not Ada", "you are wrong, I'm not Ada", "my name isn't Ada", "Ada is not my name", "don't call me Ada"],
 )  # fmt: skip
-def test_a_denied_name_is_asked_again_and_leaves_no_person(file: Path, look: Look, text: str) -> None:
+def test_after_a_user_denies_a_name_the_agent_asks_again_and_keeps_no_person_of_that_name(
+    file: Path, look: Look, text: str
+) -> None:
     with agent(file) as sim:
         sim.say("my name is ada")
         assert meant(answers(sim, text), "mistaken")
@@ -132,14 +136,14 @@ def test_a_denied_name_is_asked_again_and_leaves_no_person(file: Path, look: Loo
 
 
 @pytest.mark.parametrize("text", ["I'm not tired", "my sister is not Ada", "I am not Bob"])
-def test_a_denial_of_something_else_leaves_the_name(file: Path, text: str) -> None:
+def test_a_denial_of_something_else_does_not_change_the_name(file: Path, text: str) -> None:
     with agent(file) as sim:
         sim.say("my name is ada")
         sim.say(text)
         assert name_of(sim) == "Ada"
 
 
-def test_the_name_is_asked_after_the_first_hello_once(file: Path) -> None:
+def test_the_agent_asks_for_the_name_only_after_the_first_hello(file: Path) -> None:
     with agent(file, hibye) as sim:
         sim.say("hello")
         assert "hibye:answer_hello" in sim.fired and len(sim.said) == 1

@@ -1,4 +1,4 @@
-"""The known facts after the user has told something new."""
+"""The known facts after the user has told the agent something new."""
 
 from ravestate.modules.skill.persqa.profile import learn, merged, told_apart
 from ravestate.modules.skill.persqa.topics import Fact
@@ -10,7 +10,7 @@ def test_a_new_home_replaces_the_old_one_but_a_new_hobby_is_added() -> None:
     assert news.changed == {"home"} and news.new == {"home", "hobby"}
 
 
-def test_known_facts_are_not_new() -> None:
+def test_a_fact_that_is_already_known_is_not_new() -> None:
     news = learn({"home": ("Ulm",)}, [Fact("home", ("ulm",))])
     assert not news.new and not news.changed and news.topics == ("home",)
 
@@ -19,7 +19,7 @@ def test_the_name_is_not_among_the_learned_topics() -> None:
     assert learn({}, [Fact("name", ("Ada",))]).topics == ()
 
 
-def test_when_a_home_is_gone_it_is_unknown_but_when_hobbies_are_gone_there_are_none() -> None:
+def test_a_removed_home_becomes_unknown_but_removed_hobbies_mean_that_there_are_none() -> None:
     news = learn({"home": ("Ulm",), "hobby": ("chess",)}, [Fact("home", (), gone=True), Fact("hobby", (), gone=True)])
     assert news.facts == {"hobby": ()}
     assert news.topics == ("home", "hobby")

@@ -1,4 +1,4 @@
-"""Facts about the user for modules that do not need persqa."""
+"""persqa writes the facts about the user into a slot of interloc, so other modules need not require persqa."""
 
 from pathlib import Path
 
@@ -10,7 +10,7 @@ from ravestate.testing import simulate
 pytestmark = pytest.mark.usefixtures("reader")
 
 
-def test_known_facts_about_the_user_are_shared(file: Path) -> None:
+def test_other_modules_can_read_the_facts_about_the_user(file: Path) -> None:
     with simulate(persqa, settings={"ontology": {"path": file}}) as sim:
         sim.say("My name is Tom.")
         sim.say("I live in Hannover.")

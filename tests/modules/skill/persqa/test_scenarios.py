@@ -1,4 +1,4 @@
-"""Whole talks, in virtual time, over a real memory in a file."""
+"""Whole conversations, in virtual time, with a real memory in a file."""
 
 from __future__ import annotations
 
@@ -75,7 +75,7 @@ def meant(text: str, intent: str) -> bool:
 
 
 def asked(sim: Simulation) -> str:
-    """Return the topic that the agent asks about in a silence."""
+    """Say nothing for 6 s, and return the topic that the agent then asks about."""
     before = len(sim.said)
     sim.advance(6.0)
     question = sim.read(persqa.talk).question
@@ -85,7 +85,7 @@ def asked(sim: Simulation) -> str:
 
 
 def answers(sim: Simulation, text: str) -> str:
-    """Return the agent's answer to a text."""
+    """Say a text, and return the agent's only answer."""
     before = len(sim.said)
     sim.say(text)
     assert len(sim.said) == before + 1, (text, sim.said[before:])
@@ -117,7 +117,7 @@ STORED = {
 }
 
 
-def test_in_a_first_talk_the_agent_learns_about_the_user(file: Path, look: Look) -> None:
+def test_in_the_first_conversation_the_agent_learns_about_the_user(file: Path, look: Look) -> None:
     topics: list[str] = []
     with agent(file) as sim:
         sim.say("I talked about work and the university at breakfast")
@@ -133,7 +133,7 @@ def test_in_a_first_talk_the_agent_learns_about_the_user(file: Path, look: Look)
     assert look() == {"Ada": STORED, "Tom": {}, "Anna": {}}
 
 
-def test_another_session_remembers(file: Path) -> None:
+def test_in_a_later_session_the_agent_remembers_the_user(file: Path) -> None:
     with agent(file) as sim:
         sim.say("my name is ada and i live in hannover")
     with agent(file) as sim:
@@ -142,11 +142,11 @@ def test_another_session_remembers(file: Path) -> None:
         assert meant(said, "welcome_back")
         assert said.endswith("ou told me that you live in Hannover.")
         assert "Ada" in said
-        assert asked(sim) == "origin"  # it does not ask for what it knows
+        assert asked(sim) == "origin"  # the agent does not ask for the home, which it knows
         assert answers(sim, "where do i live").endswith("you live in Hannover.")
 
 
-def test_another_process_remembers(file: Path) -> None:
+def test_an_agent_in_another_process_remembers_the_user(file: Path) -> None:
     code = """
 import sys
 from ravestate.modules import persqa
@@ -172,11 +172,11 @@ def test_the_sample_conversation_of_the_paper_is_reproduced(file: Path, look: Lo
         said = answers(sim, "hannover")
         assert meant(said, "learned_home") and "persqa:respond" in sim.fired
         sim.say("my name is ada")
-    assert look() == {"Ada": {"lives_in": ["Hannover"]}}  # also a fact that Ada told before her name
+    assert look() == {"Ada": {"lives_in": ["Hannover"]}}  # Ada told the agent her home before her name
 
 
 @pytest.mark.parametrize("phrase", ["Which town do you call your home?", "Oh, I should visit {home}."])
-def test_the_papers_own_words_are_among_the_phrases(phrase: str) -> None:
+def test_the_agent_has_the_phrases_from_the_papers_sample_conversation(phrase: str) -> None:
     texts = [template.text for intent in ("ask_home", "learned_home") for template in BOOK.templates(intent)]
     assert phrase in texts
 
@@ -190,7 +190,7 @@ def test_each_intent_has_three_phrases_and_each_topic_has_one_that_needs_no_extr
         assert min([t.parameters for t in BOOK.templates(f"learned_{topic}")], key=len) <= {topic}
 
 
-# ------------------------------------------------------------------------------------ manners
+# ------------------------------------------------------------------------------------ when the agent asks
 
 
 @pytest.mark.parametrize("text", ["I'd rather not say", "none of your business", "no"])
@@ -209,7 +209,7 @@ def test_a_refused_topic_is_not_asked_again(file: Path, text: str) -> None:
         assert meant(answers(sim, "what is my name?"), "recall_declined")
 
 
-def test_no_means_that_there_is_none_and_dont_know_is_fine(file: Path, look: Look) -> None:
+def test_the_answers_no_and_nobody_mean_none_and_dont_know_leaves_a_topic_unknown(file: Path, look: Look) -> None:
     with agent(file, topics=["hobby", "occupation", "friend", "employer"]) as sim:
         sim.say("my name is ada")
         assert asked(sim) == "hobby"
@@ -227,7 +227,7 @@ def test_no_means_that_there_is_none_and_dont_know_is_fine(file: Path, look: Loo
     assert look() == {"Ada": {}}
 
 
-def test_after_a_mere_yes_the_agent_asks_for_details(file: Path) -> None:
+def test_the_agent_asks_for_details_if_the_user_just_says_yes(file: Path) -> None:
     with agent(file, topics=["hobby"]) as sim:
         assert asked(sim) == "hobby"
         assert meant(answers(sim, "yes"), "which")
@@ -240,7 +240,7 @@ def test_after_two_unanswered_questions_the_agent_waits_for_the_user(file: Path)
         assert len(sim.said) == 2
         sim.say("sorry, I was away.")
         sim.advance(6.0)
-        assert len(sim.said) == 4  # small talk, and a third question
+        assert len(sim.said) == 4  # the answer of the small talk, and a third question
 
 
 def test_the_agent_leaves_the_user_time_to_answer_a_question(file: Path) -> None:
@@ -261,7 +261,7 @@ def test_after_goodbye_nothing_is_asked(file: Path) -> None:
         assert len(sim.said) == before
 
 
-def test_after_a_while_words_no_longer_count_as_the_answer_to_a_question(file: Path) -> None:
+def test_after_some_time_a_text_no_longer_counts_as_the_answer_to_a_question(file: Path) -> None:
     with agent(file, topics=["home"], within=40.0, gap=1000.0) as sim:
         assert asked(sim) == "home"
         sim.advance(60.0)
@@ -269,7 +269,7 @@ def test_after_a_while_words_no_longer_count_as_the_answer_to_a_question(file: P
         assert dict(sim.read(persqa.facts)) == {}
 
 
-def test_a_no_to_what_another_module_asked_is_not_taken_for_an_answer(file: Path) -> None:
+def test_a_no_to_the_question_of_another_module_is_not_taken_for_an_answer(file: Path) -> None:
     host = rs.Module("host", requires=[rawio])
     offer = host.signal("offer")
 
@@ -302,14 +302,14 @@ def test_persqa_takes_turns_with_another_module_in_silences(file: Path) -> None:
 # ------------------------------------------------------------------------------------ the user goes first
 
 
-def test_the_users_own_question_goes_first_and_the_answer_may_follow(file: Path) -> None:
+def test_the_user_can_ask_something_before_they_answer(file: Path) -> None:
     with agent(file, knower()) as sim:
         assert asked(sim) == "name"
         assert answers(sim, "why do you ask?") == "I know it."
         assert meant(answers(sim, "ada"), "learned_name")
 
 
-def test_facts_beside_a_question_are_learnt_in_silence(file: Path, look: Look) -> None:
+def test_facts_in_an_utterance_with_a_question_are_learned_without_a_comment(file: Path, look: Look) -> None:
     with agent(file, knower()) as sim:
         sim.say("my name is ada")
         assert asked(sim) == "home"
@@ -319,7 +319,7 @@ def test_facts_beside_a_question_are_learnt_in_silence(file: Path, look: Look) -
 
 
 @pytest.mark.parametrize("text", ["what a nice day", ""])
-def test_small_talk_is_left_to_others_at_once(file: Path, text: str) -> None:
+def test_small_talk_is_left_to_other_modules_without_delay(file: Path, text: str) -> None:
     with agent(file) as sim:
         assert asked(sim) == "name"
         began = sim.now
@@ -328,7 +328,7 @@ def test_small_talk_is_left_to_others_at_once(file: Path, text: str) -> None:
         assert sim.read(persqa.who) is None
 
 
-def test_a_greeting_is_answered_by_hibye_but_a_name_in_it_is_learned(file: Path) -> None:
+def test_hibye_answers_a_greeting_but_persqa_learns_the_name_in_a_greeting(file: Path) -> None:
     with agent(file, hibye) as sim:
         assert asked(sim) == "name"
         answers(sim, "hello")
@@ -336,7 +336,7 @@ def test_a_greeting_is_answered_by_hibye_but_a_name_in_it_is_learned(file: Path)
         assert meant(answers(sim, "hello, i'm called ada"), "learned_name")
 
 
-def test_it_interrupts_small_talk_and_is_interrupted_by_the_user(file: Path) -> None:
+def test_persqa_interrupts_small_talk_and_the_user_can_interrupt_persqa(file: Path) -> None:
     with simulate(persqa, chatter(10.0), settings={"ontology": {"path": file}}) as sim:
         sim.say("it is quiet here")
         sim.advance(3.0)
@@ -360,7 +360,7 @@ def test_a_spoken_question_counts_only_if_the_user_heard_it(file: Path, heard: s
         assert (sim.read(persqa.talk).question is not None) == (heard == "whole")
 
 
-def test_words_that_come_at_the_moment_of_boredom_are_learned(file: Path) -> None:
+def test_an_utterance_at_the_moment_of_boredom_is_understood(file: Path) -> None:
     with agent(file) as sim:
         sim.advance(4.999)
         sim.context.put(rawio.input, "my name is ada")
@@ -380,7 +380,7 @@ def at_once(sim: Simulation, *texts: str) -> None:
     assert sim.failures == []
 
 
-def test_utterances_in_one_breath_are_all_learnt(file: Path, look: Look) -> None:
+def test_facts_from_several_simultaneous_utterances_are_all_learned(file: Path, look: Look) -> None:
     with agent(file) as sim:
         at_once(sim, "my name is ada", "i live in ulm", "my hobby is chess", "i work as a baker")
         assert meant(sim.said[0], "learned_name")
@@ -400,7 +400,7 @@ def test_utterances_in_one_breath_are_all_learnt(file: Path, look: Look) -> None
     assert look() == {"Ada": known, "Tom": {}}
 
 
-def test_utterances_are_learnt_although_reading_takes_long(
+def test_facts_are_learned_even_if_the_analysis_takes_a_long_time(
     file: Path, look: Look, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     loaded = asyncio.Event()
@@ -419,7 +419,7 @@ def test_utterances_are_learnt_although_reading_takes_long(
     assert look() == {"Ada": {"lives_in": ["Ulm"]}}
 
 
-def test_a_user_may_go_on_talking_while_memory_looks_them_up(file: Path, look: Look) -> None:
+def test_the_user_can_go_on_talking_while_memory_is_searched_for_them(file: Path, look: Look) -> None:
     with agent(file) as sim:
         at_once(sim, "my name is ada", "i live in ulm", "my hobby is chess")
     with agent(file) as sim:
@@ -429,7 +429,7 @@ def test_a_user_may_go_on_talking_while_memory_looks_them_up(file: Path, look: L
     assert look() == {"Ada": {"lives_in": ["Bremen"], "has_hobby": ["chess", "judo"]}}
 
 
-def test_two_agents_of_one_memory_know_one_person(file: Path, look: Look) -> None:
+def test_two_agents_that_share_a_memory_know_the_same_person(file: Path, look: Look) -> None:
     with agent(file) as one, agent(file) as other:
         for sim in (one, other):
             sim.context.put(rawio.input, "my name is ada")
@@ -456,7 +456,7 @@ def test_a_new_user_who_corrects_their_name_is_renamed(file: Path, look: Look) -
     assert look() == {"Bob": {"lives_in": ["Ulm"]}}
 
 
-def test_a_mistaken_identity_leaves_the_other_person_unchanged(file: Path, look: Look) -> None:
+def test_a_user_taken_for_another_person_does_not_change_that_persons_facts(file: Path, look: Look) -> None:
     with agent(file) as sim:
         sim.say("my name is ada and i live in hannover")
     with agent(file) as sim:
@@ -467,7 +467,7 @@ def test_a_mistaken_identity_leaves_the_other_person_unchanged(file: Path, look:
     assert look() == {"Ada": {"lives_in": ["Hannover"]}, "Bob": {"lives_in": ["Bremen"]}}
 
 
-def test_a_newcomer_who_turns_out_to_be_known(file: Path, look: Look) -> None:
+def test_a_new_user_who_corrects_their_name_to_a_known_name_is_recognised(file: Path, look: Look) -> None:
     with agent(file) as sim:
         sim.say("my name is bob and i live in hannover")
     with agent(file) as sim:
@@ -490,7 +490,7 @@ def test_a_home_is_corrected(file: Path, look: Look, text: str) -> None:
     assert look() == {"Ada": {"lives_in": ["Bremen"]}}
 
 
-def test_a_no_to_the_next_question_is_no_correction(file: Path) -> None:
+def test_a_no_to_the_next_question_corrects_no_earlier_answer(file: Path) -> None:
     with agent(file, topics=["home", "origin"]) as sim:
         assert asked(sim) == "home"
         sim.say("hannover")
@@ -546,7 +546,7 @@ def test_an_ended_fact_is_not_recalled_from_an_earlier_statement(
         assert value not in answers(sim, question).lower()
 
 
-def test_a_second_hobby_is_added_and_a_correction_replaces_the_last(file: Path, look: Look) -> None:
+def test_a_second_hobby_is_added_and_a_correction_replaces_only_the_last_one(file: Path, look: Look) -> None:
     with agent(file) as sim:
         sim.say("my name is ada")
         sim.say("my hobby is chess")
@@ -556,10 +556,10 @@ def test_a_second_hobby_is_added_and_a_correction_replaces_the_last(file: Path, 
     assert look() == {"Ada": {"has_hobby": ["chess", "ludo"]}}
 
 
-# ------------------------------------------------------------------------------------ who is who
+# ------------------------------------------------------------------------------------ people with similar names
 
 
-def test_the_better_known_of_two_namesakes_is_meant(file: Path) -> None:
+def test_the_namesake_with_the_most_facts_is_recognised(file: Path) -> None:
     with agent(file) as sim:
         memory = sim.read(ontology.memory)
         assert memory is not None
@@ -571,7 +571,7 @@ def test_the_better_known_of_two_namesakes_is_meant(file: Path) -> None:
         assert sim.read(persqa.who) == second
 
 
-def test_a_mentioned_friend_is_new_when_they_come(file: Path, look: Look) -> None:
+def test_a_friend_whom_another_user_mentioned_is_a_new_user(file: Path, look: Look) -> None:
     with agent(file) as sim:
         sim.say("my name is ada")
         sim.say("my friends are called tom and anna")
@@ -581,7 +581,7 @@ def test_a_mentioned_friend_is_new_when_they_come(file: Path, look: Look) -> Non
     assert look() == {"Ada": {"friend_of": ["Tom", "Anna"]}, "Tom": {"lives_in": ["Ulm"]}, "Anna": {}}
 
 
-def test_a_friend_of_ones_own_name_is_somebody_else(file: Path, look: Look) -> None:
+def test_a_friend_with_the_users_name_is_another_person(file: Path, look: Look) -> None:
     with agent(file) as sim:
         sim.say("my name is ada")
         sim.say("my friend is called ada")
@@ -606,7 +606,7 @@ def test_a_friend_of_ones_own_name_is_somebody_else(file: Path, look: Look) -> N
         ("my name is ada\x00\x1b[31m", "Ada"),
     ],
 )
-def test_unusual_names_are_learned_or_left_out_without_failure(
+def test_unusual_names_are_learned_or_ignored_without_a_failure(
     file: Path, look: Look, text: str, name: str | None
 ) -> None:
     with agent(file) as sim:
@@ -652,12 +652,12 @@ def test_the_users_questions_about_themselves_are_answered(file: Path) -> None:
         assert answers(sim, "where can i buy bread?") == "I know it."
 
 
-def test_nothing_is_known_yet(file: Path) -> None:
+def test_the_agent_says_that_it_knows_nothing_about_a_new_user(file: Path) -> None:
     with agent(file) as sim:
         assert meant(answers(sim, "what do you know about me?"), "recall_nothing")
 
 
-# ------------------------------------------------------------------------------------ to forget
+# ------------------------------------------------------------------------------------ forgetting
 
 
 def test_forget_me_forgets_the_user(file: Path, look: Look) -> None:
@@ -678,7 +678,7 @@ def test_forget_me_forgets_the_user(file: Path, look: Look) -> None:
     assert look() == {}
 
 
-def test_a_yes_after_another_question_forgets_nobody(file: Path, look: Look) -> None:
+def test_a_yes_to_a_later_question_does_not_make_the_agent_forget_the_user(file: Path, look: Look) -> None:
     with agent(file, knower()) as sim:
         sim.say("my name is ada")
         assert meant(answers(sim, "forget me"), "forget_ask")
@@ -694,7 +694,7 @@ class Broken:
     """Memory that opens, and fails later."""
 
     async def opened(self) -> None:
-        """Nothing is wrong yet."""
+        """Raise no error yet."""
 
     def __getattr__(self, name: str) -> Any:
         async def fail(*_: object, **__: object) -> None:
@@ -703,14 +703,14 @@ class Broken:
         return fail
 
 
-def test_without_memory_users_do_not_hear_that_they_are_forgotten() -> None:
+def test_without_memory_the_agent_does_not_claim_to_have_forgotten_the_user() -> None:
     with agent(None) as sim:
         sim.say("my name is ada")
         sim.say("forget me")
         assert meant(answers(sim, "yes"), "forget_failed")
 
 
-def test_without_memory_the_talk_goes_on_and_the_user_is_told_once() -> None:
+def test_without_memory_the_conversation_goes_on_and_the_agent_says_once_that_it_saves_nothing() -> None:
     with agent(None) as sim:
         assert sim.read(ontology.memory) is None
         assert meant(answers(sim, "my name is ada"), "unsaved_name")
@@ -721,7 +721,7 @@ def test_without_memory_the_talk_goes_on_and_the_user_is_told_once() -> None:
 
 
 def test_a_memory_that_cannot_be_opened_is_not_reported_again(caplog: pytest.LogCaptureFixture) -> None:
-    """`ontology` reports it."""
+    """`ontology` has already reported that the memory cannot be opened."""
 
     class Unopened(Broken):
         async def opened(self) -> None:
@@ -753,7 +753,7 @@ def test_facts_that_could_not_be_saved_are_saved_later(
     assert look() == {"Ada": {"lives_in": ["Ulm"], "works_as": ["baker"]}}
 
 
-def test_a_memory_that_fails_when_users_come_knows_them_later(file: Path, look: Look) -> None:
+def test_a_user_who_introduces_themselves_while_memory_fails_is_recognised_later(file: Path, look: Look) -> None:
     with agent(file) as sim:
         sim.say("my name is ada and i live in ulm")
     with agent(file) as sim:
@@ -766,7 +766,7 @@ def test_a_memory_that_fails_when_users_come_knows_them_later(file: Path, look: 
     assert look() == {"Ada": {"lives_in": ["Ulm"], "has_hobby": ["chess"]}}
 
 
-def test_the_talk_goes_on_while_another_process_has_the_memory_open(file: Path, look: Look) -> None:
+def test_the_conversation_goes_on_while_another_process_has_the_memory_open(file: Path, look: Look) -> None:
     code = """
 import sys
 from ravestate.modules import ontology
@@ -790,7 +790,7 @@ memory.close().result(20)
 
 
 @pytest.mark.skipif(sys.platform == "win32", reason="Windows has no limit on the size of files")
-def test_the_talk_goes_on_with_a_full_disk(file: Path, look: Look) -> None:
+def test_the_conversation_goes_on_with_a_full_disk(file: Path, look: Look) -> None:
     code = """
 import os, resource, sys
 from ravestate.modules import ontology, persqa
@@ -812,7 +812,7 @@ with simulate(persqa, settings={"ontology": {"path": sys.argv[1]}}) as sim:
     assert look() == {"Ada": {"lives_in": ["Ulm"], "works_as": ["baker"], "has_hobby": ["chess"]}}
 
 
-def test_a_remembered_user_is_known_although_nothing_can_be_saved(
+def test_a_known_user_is_recognised_even_if_nothing_can_be_saved(
     file: Path, look: Look, caplog: pytest.LogCaptureFixture
 ) -> None:
     with agent(file) as sim:
@@ -829,7 +829,7 @@ def test_a_remembered_user_is_known_although_nothing_can_be_saved(
     assert look() == {"Ada": {"lives_in": ["Ulm"], "works_as": ["baker"]}}
 
 
-def test_without_nlp_it_leaves_the_talk_to_others(file: Path) -> None:
+def test_persqa_leaves_utterances_to_other_modules_if_nlp_fails(file: Path) -> None:
     with simulate(
         persqa,
         chatter(),
@@ -843,7 +843,7 @@ def test_without_nlp_it_leaves_the_talk_to_others(file: Path) -> None:
 # ------------------------------------------------------------------------------------ users who come and go
 
 
-def test_a_user_who_comes_with_a_name_is_reminded(file: Path) -> None:
+def test_the_agent_says_what_it_remembers_if_the_platform_gives_the_users_name(file: Path) -> None:
     with agent(file) as sim:
         sim.say("my name is ada and i live in ulm")
     with agent(file) as sim:
@@ -854,7 +854,7 @@ def test_a_user_who_comes_with_a_name_is_reminded(file: Path) -> None:
         assert answers(sim, "peru") != "I see."
 
 
-def test_a_user_gets_a_name_and_the_next_user_is_another_person(file: Path) -> None:
+def test_a_user_without_a_name_gets_one_and_the_next_user_is_another_person(file: Path) -> None:
     with agent(file) as sim:
         sim.put(interloc.users, {"console": None})
         sim.say("my name is ada")
@@ -883,7 +883,7 @@ def test_the_user_who_stays_keeps_their_own_facts(file: Path, look: Look) -> Non
     assert look() == {"Ada": {"lives_in": ["Ulm"]}, "Bob": {"lives_in": ["Bremen"]}}
 
 
-def test_a_user_whom_the_platform_names_differently_is_another_person(file: Path, look: Look) -> None:
+def test_the_user_is_another_person_if_the_platform_gives_another_name(file: Path, look: Look) -> None:
     with agent(file) as sim:
         sim.say("my name is ada and i live in ulm")
         sim.put(interloc.users, {"console": "Bob"})
@@ -892,7 +892,7 @@ def test_a_user_whom_the_platform_names_differently_is_another_person(file: Path
     assert look() == {"Ada": {"lives_in": ["Ulm"]}, "Bob": {"works_as": ["baker"]}}
 
 
-def test_a_user_whom_the_platform_gives_as_a_node_is_that_person(file: Path) -> None:
+def test_a_platform_can_give_a_user_as_a_node_in_memory(file: Path) -> None:
     with agent(file) as sim:
         memory = sim.read(ontology.memory)
         assert memory is not None
@@ -901,7 +901,7 @@ def test_a_user_whom_the_platform_gives_as_a_node_is_that_person(file: Path) -> 
         assert sim.read(persqa.who) == second
 
 
-# ------------------------------------------------------------------------------------ what it is
+# ------------------------------------------------------------------------------------ the module
 
 
 def test_an_unknown_topic_in_the_settings_is_refused() -> None:
@@ -910,14 +910,14 @@ def test_an_unknown_topic_in_the_settings_is_refused() -> None:
     assert "there is no topic 'hobbies'" in str(refused.value.exceptions[0])
 
 
-def test_its_answer_outbids_greetings_and_small_talk() -> None:
+def test_the_answer_of_persqa_has_more_utility_than_greetings_and_small_talk() -> None:
     policy = rs.compile(persqa, hibye, chatter(), knower())
     mine = policy.utility("persqa:respond")
     for other in ("hibye:answer_hello", "hibye:answer_goodbye", "chatter:chat", "knower:answer"):
         assert mine > policy.utility(other)
 
 
-def test_nothing_heavy_is_imported_with_the_module() -> None:
+def test_importing_the_module_imports_no_heavy_library() -> None:
     code = "import sys; from ravestate.modules import persqa; persqa.module; print('spacy' in sys.modules, 'ladybug' in sys.modules)"
     done = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=True)
     assert done.stdout == "False False\n"
@@ -933,7 +933,7 @@ def test_nothing_heavy_is_imported_with_the_module() -> None:
         ("my name is marlies", "Marlies"),
     ],
 )
-def test_a_name_is_heard_beside_other_words(text: str, name: str) -> None:
+def test_a_name_is_found_among_other_words(text: str, name: str) -> None:
     with agent(None) as sim:
         sim.say(text)
         node = sim.read(persqa.who)
@@ -955,7 +955,7 @@ def test_sorrow_is_not_taken_for_a_refusal(file: Path, text: str) -> None:
         assert answers(sim, text) == "I see."
 
 
-def test_somebody_elses_girlfriend_is_not_taken_for_the_users_partner(file: Path) -> None:
+def test_another_persons_girlfriend_is_not_taken_for_the_users_partner(file: Path) -> None:
     with agent(file) as sim:
         sim.say("my ex Ralf came by and hes got a new girlfriend called Tamara")
         assert dict(sim.read(persqa.facts)) == {}
@@ -967,13 +967,13 @@ def test_an_age_in_words_is_understood(file: Path) -> None:
         assert dict(sim.read(persqa.facts)) == {"age": ("7",)}
 
 
-def test_sorrow_about_a_relative_is_left_to_other_modules(file: Path) -> None:
+def test_other_modules_answer_sorrow_about_a_relative(file: Path) -> None:
     with agent(file) as sim:
         assert answers(sim, "my son Fiete has a bad fever") == "I see."
         assert dict(sim.read(persqa.facts)) == {"son": ("Fiete",)}
 
 
-def test_only_the_name_is_asked_for_in_the_first_turns_and_nothing_after_a_feeling(file: Path) -> None:
+def test_in_the_first_turns_the_agent_asks_only_for_the_name_and_after_sad_news_for_nothing(file: Path) -> None:
     with agent(file, turns=3) as sim:
         assert asked(sim) == "name"
         sim.say("it is raining")

@@ -1,4 +1,4 @@
-"""The state of the conversation, step by step."""
+"""`Talk` is the state of the conversation. It changes with each utterance of the agent and of the user."""
 
 from ravestate.modules.skill.persqa.talk import Question, Talk
 
@@ -17,12 +17,12 @@ def test_the_agents_next_utterance_marks_its_question_as_spoken_over() -> None:
     assert question is not None and question.spoken_over and not question.fresh
 
 
-def test_an_answer_to_the_user_does_not_mark_the_question_as_spoken_over() -> None:
+def test_the_agents_reply_to_the_user_does_not_mark_its_question_as_spoken_over() -> None:
     question = asked().listening(20.0, leave=False).speaking().question
     assert question is not None and not question.spoken_over and question.turns == 1
 
 
-def test_a_question_stays_open_until_two_utterances_or_some_time_have_passed() -> None:
+def test_a_question_stays_open_for_a_limited_time_and_less_than_two_utterances_of_the_user() -> None:
     talk = asked()
     assert talk.pending(100.0, within=90.0) is not None
     assert talk.pending(100.1, within=90.0) is None
@@ -31,19 +31,19 @@ def test_a_question_stays_open_until_two_utterances_or_some_time_have_passed() -
     assert once.listening(20.0, leave=False).pending(20.0, within=90.0) is None
 
 
-def test_a_goodbye_ends_the_question_until_the_user_speaks() -> None:
+def test_after_a_goodbye_the_question_is_over_and_the_agent_is_quiet_until_the_user_speaks() -> None:
     left = asked().listening(20.0, leave=True)
     assert left.question is None and left.quiet
     assert not left.listening(20.0, leave=False).quiet
 
 
-def test_ignored_questions_count_until_the_user_speaks() -> None:
+def test_ignored_questions_are_counted_until_the_user_speaks() -> None:
     talk = asked().waiting().asking("name", 50.0).waiting()
     assert talk.ignored == 2 and talk.question is None
     assert talk.listening(20.0, leave=False).ignored == 0
 
 
-def test_a_fact_can_be_corrected_for_a_while() -> None:
+def test_a_fact_can_be_corrected_in_the_next_two_utterances() -> None:
     talk = asked().learning(["home"], "home", ("Ulm",))
     assert talk.question is None and talk.told == {"home"}
     for _ in range(2):

@@ -1,4 +1,4 @@
-"""Free statements are remembered, used as answers, taken up later, and forgotten."""
+"""Free statements, such as "Jonas plays the violin": the agent remembers them, answers with them, and forgets them."""
 
 from __future__ import annotations
 
@@ -26,7 +26,9 @@ TOLD = [
 
 
 @pytest.mark.parametrize(("told", "question", "answer"), TOLD, ids=[told for told, _, _ in TOLD])
-def test_a_free_statement_is_answered_now_and_another_day(file: Path, told: str, question: str, answer: str) -> None:
+def test_a_free_statement_answers_a_question_in_this_and_a_later_session(
+    file: Path, told: str, question: str, answer: str
+) -> None:
     with agent(file, knower()) as sim:
         assert answer not in answers(sim, question)
         sim.say("my name is ada")
@@ -38,7 +40,7 @@ def test_a_free_statement_is_answered_now_and_another_day(file: Path, told: str,
         assert sim.failures == []
 
 
-def test_it_is_kept_with_the_speaker_and_the_moment(file: Path) -> None:
+def test_a_free_statement_is_saved_with_its_speaker_and_its_time(file: Path) -> None:
     with agent(file) as sim:
         sim.say("my name is ada")
         assert answers(sim, "Jonas plays the violin") == "I see."  # small talk answers
@@ -50,7 +52,7 @@ def test_it_is_kept_with_the_speaker_and_the_moment(file: Path) -> None:
         assert remark["wording"] == "Jonas plays the violin" and remark["said_at"] == one.at
 
 
-def test_a_statement_from_before_the_user_has_a_name_is_recalled_and_kept(file: Path, look: Look) -> None:
+def test_a_statement_that_comes_before_the_users_name_is_recalled_and_saved(file: Path, look: Look) -> None:
     with agent(file) as sim:
         sim.say("I painted a dragon")
         assert "you painted a dragon" in answers(sim, "what did I paint?")
@@ -75,14 +77,14 @@ MEANT = [
 
 
 @pytest.mark.parametrize(("told", "question", "answer"), MEANT, ids=[told for told, _, _ in MEANT])
-def test_a_question_in_other_words_finds_what_was_told(file: Path, told: str, question: str, answer: str) -> None:
+def test_a_question_in_other_words_finds_the_statement(file: Path, told: str, question: str, answer: str) -> None:
     with agent(file, knower()) as sim:
         sim.say("I painted a dragon")
         sim.say(told)
         assert answer in answers(sim, question)
 
 
-def test_a_question_that_nothing_answers_is_left_to_others(file: Path) -> None:
+def test_a_question_that_no_statement_answers_is_left_to_other_modules(file: Path) -> None:
     with agent(file, knower()) as sim:
         sim.say("my presentation is on Thursday")
         assert answers(sim, "can I ask you something?") == "I know it."
@@ -108,7 +110,9 @@ def test_a_free_statement_can_be_forgotten(file: Path, look: Look, text: str) ->
         ("Jonas plays the violin", "forget Jonas", "what does Jonas play, do you remember?"),
     ],
 )
-def test_forgotten_words_are_not_found_in_the_talk(file: Path, told: str, wish: str, question: str) -> None:
+def test_a_forgotten_statement_is_not_recalled_from_the_conversation(
+    file: Path, told: str, wish: str, question: str
+) -> None:
     with agent(file, knower()) as sim:
         sim.say("my name is ada")
         sim.say(told)
@@ -117,11 +121,13 @@ def test_forgotten_words_are_not_found_in_the_talk(file: Path, told: str, wish: 
 
 
 def holds(file: Path, words: bytes) -> bool:
-    """Return whether a file of the memory has these bytes."""
+    """Return whether any file of the memory has these bytes."""
     return any(words in one.read_bytes() for one in file.parent.iterdir())
 
 
-def test_forgetting_is_confirmed_when_no_byte_is_left(file: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+def test_the_agent_confirms_forgetting_only_when_the_file_has_no_byte_of_it(
+    file: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
     monkeypatch.setattr(worker, "PAUSE", 3600.0)
     with agent(file) as sim:
         sim.say("my name is ada")
@@ -166,7 +172,7 @@ def test_forgetting_a_relative_removes_the_statements_about_them(file: Path, loo
         "the weather is nice",
     ],
 )
-def test_wishes_questions_hearsay_denials_and_trivial_remarks_are_not_kept(file: Path, text: str) -> None:
+def test_wishes_questions_hearsay_denials_and_trivial_remarks_are_not_saved(file: Path, text: str) -> None:
     with agent(file) as sim:
         sim.say(text)
         assert dict(sim.read(persqa.told)) == {}
@@ -201,7 +207,7 @@ def test_wishes_questions_hearsay_denials_and_trivial_remarks_are_not_kept(file:
         ),
     ],
 )
-def test_a_question_for_a_person_is_answered_with_their_name(
+def test_a_question_about_a_person_is_answered_with_the_statements_that_name_them(
     told: tuple[str, ...], question: str, answer: list[str]
 ) -> None:
     said: list[Told] = []

@@ -1,4 +1,4 @@
-"""The next topic to ask about."""
+"""`due` returns the topic that the agent asks about next."""
 
 import pytest
 
@@ -35,24 +35,26 @@ def test_a_follow_up_comes_first_but_only_after_an_answer_to_its_topic(last: str
 
 
 @pytest.mark.parametrize("occupation", ["student", "Retired", "self-employed"])
-def test_occupations_without_an_employer_are_not_asked_for_one(occupation: str) -> None:
+def test_students_pensioners_and_the_self_employed_are_not_asked_for_an_employer(occupation: str) -> None:
     known = {topic: ("30",) for topic in ALL if topic != "employer"}
     assert next_topic(known) == "employer"
     assert next_topic({**known, "occupation": (occupation,)}) == ""
 
 
 @pytest.mark.parametrize(("age", "first"), [("9", ""), ("15", "home"), ("30", "occupation"), ("86", "home")])
-def test_children_are_asked_nothing_and_old_people_nothing_about_work(age: str, first: str) -> None:
+def test_the_agent_asks_a_child_nothing_and_asks_old_people_and_teenagers_nothing_about_work(
+    age: str, first: str
+) -> None:
     assert due(["occupation", "subject", "home"], {"age": (age,)}, (), {}, touched=ALL, limit=2) == first
 
 
-def test_work_and_studies_are_asked_for_only_after_the_user_touched_them() -> None:
+def test_the_agent_asks_about_work_and_studies_only_after_the_user_has_mentioned_them() -> None:
     assert due(["occupation", "subject"], {}, (), {}, limit=2) == ""
     touched = touched_by(["my", "boss", "be", "angry"])
     assert due(["occupation", "subject"], {}, (), {}, touched=touched, limit=2) == "occupation"
 
 
-def test_memory_knows_each_topic() -> None:
+def test_memory_has_the_relation_and_type_of_each_topic() -> None:
     types = types_of(ontology.Settings())
     for topic in TOPICS.values():
         if topic.relation:

@@ -1,4 +1,4 @@
-"""Rules for every utterance. The set ``persqa_facts`` measures how well utterances are understood."""
+"""Properties of any utterance. The quality set ``persqa_facts`` measures how well persqa understands sentences."""
 
 from dataclasses import replace
 
@@ -37,13 +37,13 @@ def test_empty_utterances_mean_nothing(text: str) -> None:
     assert understand(seen(text), Talk(), {}, 1.0, 90.0).kind == "nothing"
 
 
-def test_an_answer_counts_only_while_its_question_waits() -> None:
+def test_an_answer_counts_only_while_the_question_is_open() -> None:
     heard = seen("hannover")
     assert understand(heard, talk_about("home"), {}, 90.0, 90.0).kind == "told"
     assert understand(heard, talk_about("home"), {}, 91.0, 90.0).kind == "nothing"
 
 
-def test_a_denial_of_what_is_not_known_is_noted_silently() -> None:
+def test_a_denial_of_an_unknown_fact_gets_no_answer() -> None:
     heard = seen("i don't live in hannover")
     assert not understand(heard, Talk(), {}, 1.0, 90.0).aloud
     assert understand(heard, Talk(), {"home": ("Hannover",)}, 1.0, 90.0).aloud
@@ -53,7 +53,7 @@ def test_a_denial_of_what_is_not_known_is_noted_silently() -> None:
 @pytest.mark.parametrize(
     "text", ["the train was late again", "can you swim?", "that movie was great", "my sister paints"]
 )
-def test_a_question_never_swallows_an_unrelated_sentence(topic: str, text: str) -> None:
+def test_an_unrelated_sentence_is_not_taken_for_the_answer_to_a_question(topic: str, text: str) -> None:
     assert not understand(seen(text), talk_about(topic), {}, 1.0, 90.0).facts
 
 
@@ -64,7 +64,7 @@ def test_a_general_question_is_not_answered_from_the_users_statements() -> None:
     assert understand(seen("why do babies cry so much?"), talk, {}, 1.0, 90.0).kind == "nothing"
 
 
-def test_only_a_fresh_yes_forgets_the_user() -> None:
+def test_only_a_yes_immediately_after_the_question_forgets_the_user() -> None:
     assert understand(seen("yes"), talk_about(FORGET), {}, 1.0, 90.0).kind == "forget_yes"
     assert understand(seen("yes"), talk_about(FORGET).speaking(), {}, 1.0, 90.0).kind == "nothing"
 
@@ -77,26 +77,28 @@ def test_sentences_that_resemble_a_wish_to_be_forgotten_forget_nothing(text: str
 @pytest.mark.parametrize(
     ("text", "values"), [("in hannover", ("Hannover",)), ("I live in Ulm", ("Ulm",)), ("I'd rather not say", ())]
 )
-def test_an_answer_to_the_agents_doubt_confirms_the_name(text: str, values: tuple[str, ...]) -> None:
+def test_a_fact_or_a_refusal_answers_the_question_that_tests_who_the_user_is(
+    text: str, values: tuple[str, ...]
+) -> None:
     talk = Talk(doubt="home").asking(CONFIRM, 0.0).speaking()
     meaning = understand(seen(text), talk, {"name": ("Ada",)}, 1.0, 90.0)
     assert meaning.kind == "vouched"
     assert tuple(value for fact in meaning.facts for value in fact.values) == values
 
 
-def test_a_name_before_a_question_is_heard() -> None:
+def test_a_name_before_a_question_is_learned_without_a_comment() -> None:
     meaning = understand(seen("hey! i'm thabo, how are you?"), Talk(), {}, 1.0, 90.0)
     assert [fact.values for fact in meaning.facts] == [("Thabo",)] and not meaning.aloud
 
 
-def test_his_name_is_that_of_the_relative_mentioned_before() -> None:
+def test_his_name_means_the_name_of_the_relative_mentioned_before() -> None:
     father = understand(seen("My father died nine days ago."), Talk(), {}, 1.0, 90.0)
     talk = Talk().listening(1.0, leave=False, person=father.person)
     told = understand(seen("His name was Joost."), talk, {}, 2.0, 90.0)
     assert [(fact.topic, fact.values) for fact in told.facts] == [("father", ("Joost",))]
 
 
-def test_a_refusal_beside_a_sum_gets_no_answer() -> None:
+def test_persqa_does_not_answer_a_refusal_if_a_sum_follows_it() -> None:
     meaning = understand(seen("no time. 12 x 30 / 5"), Talk().asking("name", 0.0), {}, 1.0, 90.0)
     assert meaning.kind == "nothing" or not meaning.aloud
 

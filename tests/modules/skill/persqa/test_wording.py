@@ -1,4 +1,4 @@
-"""The spelling of values, and their wording."""
+"""The spelling of values, and the clauses that tell them."""
 
 import pytest
 
@@ -22,7 +22,7 @@ from ravestate.modules.skill.persqa.wording import clause, same, spoken, tidy
         ("occupation", "Software Engineer", "software engineer"),
     ],
 )
-def test_values_are_spelled_properly(topic: str, text: str, written: str) -> None:
+def test_values_get_the_right_capitals(topic: str, text: str, written: str) -> None:
     assert tidy(text, TOPICS[topic]) == written
 
 
