@@ -210,7 +210,7 @@ def _understand(found: Hearing, phrases: Material, heard: Heard, seen: Analysis,
         "pending": pending is not None,
         "closed": pending is not None and pending.closed,
         "answering": answering,
-        "more": "tell_more" in seen.acts or "then" in low,
+        "more": "tell_more" in seen.acts or ("then" in low and size <= SHORT),
         "few": size <= FEW_WORDS,
         "long": size >= LONG,
         "short": size <= SHORT,
@@ -331,7 +331,7 @@ def _ranked(
         beside = (
             act.text != asking or act.name in ("greeting", "farewell")
             if asking
-            else few and not whole and not (last and act.name == "farewell")
+            else few and not whole and not (last and act.name in ("farewell", "thanks"))
         )
         if act.score >= least and not beside and (_fits(phrases.acts[act.name], found.moves) or (whole and few)):
             ranked.append((act.score, phrases.acts[act.name]))

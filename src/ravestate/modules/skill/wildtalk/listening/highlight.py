@@ -55,7 +55,7 @@ _LAST = word_set("lol haha btw tho though lmao xd pls please again too")
 _PLACES = ("GPE", "LOC", "FAC", "EVENT", "PRODUCT", "WORK_OF_ART", "NORP")
 """Kinds of names that may be a highlight."""
 _PRONOUNS = word_set("mine yours his hers ours theirs")
-_DROPPED = word_set("some any such whatever its maybe perhaps probably")
+_DROPPED = word_set("some any such whatever its maybe perhaps probably just only")
 """Words that sound odd at the beginning of an exclamation. *Its* mostly is a typed *it's*."""
 _PLACING = word_set("in on under behind off onto into over without inside across around through between among outside")
 """Prepositions with which a highlight may begin."""

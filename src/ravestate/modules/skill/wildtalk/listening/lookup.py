@@ -37,6 +37,8 @@ DARKLY = 0.5
 """The minimum probability of suiting at which a sad entry of the bank marks an utterance as dark (sad or grave)."""
 LEADING = 0.1
 """The bonus of an entry with follow-ups: after its reply, the agent understands the user's next words better."""
+_NODS = frozenset(("acknowledgement", "greeting"))
+"""Acts that say little beside another sentence."""
 _THEY = frozenset(("he", "she", "they", "it"))
 BESIDE = 4
 """If an utterance has longer sentences, those with fewer words than this, such as *ok* or *well*, are not compared."""
@@ -60,7 +62,9 @@ def near_in(
     """
     sentences = seen.sentences[:6]
     longer = [sentence for sentence in sentences if len(sentence.split()) >= BESIDE]
-    texts = [asking] if asking else list(longer or sentences)
+    nods = {act.text for act in seen.acts.values() if act.name in _NODS}  # "fine. sorry for shouting"
+    rest = [sentence for sentence in sentences if sentence not in nods]
+    texts = [asking] if asking else list(longer or rest or sentences)
     if len(seen.tree.words) <= WHOLE and not (asking and len(seen.sentences) > 1):  # "haha! do dogs dream" asks
         texts.append(seen.text)
     own = tone_of(seen.text)

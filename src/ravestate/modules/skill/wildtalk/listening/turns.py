@@ -28,7 +28,7 @@ _LEAVING = re.compile(
 
 _REPROACH = re.compile(
     r"\b(?:i am|i'm|im|i feel|i felt|i was|me feel)(?: \w+){0,3} (?:dumb|stupid|idiot|idiotic|useless|worthless|failure|loser|pathetic"
-    r"|hopeless|fool|foolish|clumsy|rubbish)\b",
+    r"|hopeless|fool|foolish|clumsy|rubbish)\b|\blike an? (?:idiot|fool|moron)\b",
     re.IGNORECASE,
 )
 """Harsh words of users about themselves."""

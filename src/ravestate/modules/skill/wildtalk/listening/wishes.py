@@ -32,6 +32,8 @@ _OFFERS = re.compile(
     r"\b(?:i|we|he|she|they)(?:'ve|'m)? (?:(?:just|always|once|also|really|never|don't) )?(?:have|had|got|know|knew|read|"
     r"write|wrote|sing|sang|told|tell|heard|like|love|liked|loved|am|was|were|said|remember)\b"
     r"|\bi (?:\w+ )?(?:want|need|have|would like|will|'ll) to (?:tell|ask|sing|read|write|play you)\b"
+    r"|\b(?:used to|would always|loved to|liked to) (?:sing|tell|read|play|write)\b"
+    r"|\b(?:don't|didn't|do not|did not|never) (?:\w+ )?(?:ask|asked|want|wanted|need)\b(?!.*\b(?:but|instead|rather)\b)"
     r"|\b(?:tell|ask|show|sing|read) you\b|\b(?:do|would) you (?:like|want) to hear\b|\bto hear (?:my|mine)\b|\bask you\b"
     r"|\b(?:is|was|'s|are|were|been)(?: \w+)? an? (?:\w+ )?{noun}|\b(?:the|that|this|those|my|your|his|her|their|our|same"
     r"|no|what a) (?:\w+ )?{noun}|\byou (?:told|said|sang)\b|\byou like {noun}".replace("{noun}", r"(?:joke|stor|song|riddle|tale|pun)")
