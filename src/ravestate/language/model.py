@@ -20,7 +20,7 @@ if TYPE_CHECKING:
 TOKENS = 512
 """The maximum number of tokens that a model reads of a text, or of a pair of texts."""
 CHARACTERS = 10_000
-"""The maximum number of characters that the tokenizer reads; 512 tokens of running text have fewer."""
+"""The maximum number of characters that the tokenizer reads. 512 tokens of normal text have fewer characters."""
 BATCH_TOKENS = 256
 """The maximum number of tokens in a batch, padding included. Small batches need little memory."""
 
