@@ -89,13 +89,13 @@ class Parse:
 
 @lru_cache(maxsize=REMEMBERED)
 def parse(text: str) -> Parse:
-    """Parse a text with the pipeline of nlp. A recent text takes no time, because readings share their parts."""
+    """Parse a text with the pipeline of nlp. Recent parses are kept, because several readings contain the same text."""
     tree, entities = pipeline("").read(printable(text))
     return parsed(tree, entities, question_of(tree))
 
 
 def parsed(tree: Tree, entities: Sequence[Entity], kind: QuestionWord | None) -> Parse:
-    """Return the parse. Its question is the first sentence with a question word or mark, or else the last sentence."""
+    """Return the parse. Its question is the first sentence with a question word or a question mark, or else the last."""
     sentences = [tree.subtree(word) for word in tree.words if word.head == word.index and word.pos != "PUNCT"]
     asking = [s for s in sentences if any(word.tag in WH for word in s) or s[-1].text.endswith("?")]
     asked = (asking or sentences[-1:] or [[]])[0]
@@ -282,7 +282,7 @@ def _picked(tree: Tree, rank: Word) -> Iterator[Word]:
 
 
 def is_vague(question: Question) -> bool:
-    """Return whether a question is about an *it* or *they*, and says little else.
+    """Return whether a question says little more than *it* or *they*.
 
     Example:
         >>> is_vague(as_question("Can they fly?")), is_vague(as_question("When did it start to rain?"))
