@@ -57,7 +57,7 @@ class Reader:
         self.person = person or next(filter(None, owned), "")
 
     def facts(self) -> list[Fact]:
-        """Return the facts that the user states, one for each topic."""
+        """Return the facts that the user states or denies, at most one of each for a topic."""
         told: dict[str, tuple[str, ...]] = {}
         gone: dict[str, tuple[str, ...]] = {}
         denied = ""  # the topic of the last denial: "my name isn't Ada, it's Ida"
@@ -114,7 +114,7 @@ class Reader:
         return [*(Fact(topic, values) for topic, values in told.items() if values), *struck]
 
     def asks(self) -> Fact | None:
-        """Return the fact that the user asks for. It has values if the user wants these values confirmed."""
+        """Return the fact that the user asks for. If the user asks whether certain values are right, it has these values."""
         kinds = nlp.QuestionWord
         for said in self.seen.statements:
             if not said.question or said.conditional:

@@ -23,7 +23,7 @@ from .wording import among, clauses, joined, learned, memorable, same, say, stat
 
 T = TypeVar("T")
 BRIEF = 9
-"""The maximum number of words of an utterance that a stock reply to its fact answers. Longer ones have more to say."""
+"""The maximum number of words of an utterance for which a stock reply to its fact is enough."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -31,7 +31,7 @@ class Response:
     """The response to an utterance."""
 
     answer: Intent | None
-    """The reply; None if there is none."""
+    """The reply; None if the agent does not reply."""
     user: Acquaintance
     errand: Callable[[ontology.Memory | None], Awaitable[Response]] | None = None
     """A task that needs memory and runs before the reply. It takes the memory, or None, and returns the final response.
@@ -362,8 +362,8 @@ def _struck(meaning: Meaning, user: Acquaintance) -> Response:
 def _unrelated(said: Iterable[Told], values: Sequence[str]) -> tuple[Told, ...]:
     """Leave out the statements about some values, and return the rest.
 
-    A statement is about a value if it contains the value. If no statement contains the whole value, its last word
-    counts: *chess* of *playing chess*.
+    A statement is about a value if it contains the value. If no statement contains the whole value, the value's last
+    word counts: *chess* in *playing chess*.
     """
     said = tuple(said)
     for value in values:

@@ -85,7 +85,8 @@ class Told:
 def told_in(reader: Reader, before: Sequence[Told] = ()) -> tuple[list[Told], list[Told]]:
     """Return the free statements of an utterance, and all its statements.
 
-    In both, the subject is a name where possible: of the person named last for *he*, of the known sister for *my sister*.
+    In both lists, a name replaces the subject where possible. *He* becomes the person named last, and *my sister* becomes
+    the known sister.
     """
     free: list[Told] = []
     heard: list[Told] = []
@@ -332,7 +333,7 @@ def _retold(reader: Reader, said: nlp.Statement) -> str:
 
 
 def _verb(reader: Reader, said: nlp.Statement) -> Word | None:
-    """Return the verb of a statement: of several with the same lemma, the one with the statement's subject."""
+    """Return the verb of a statement. If several verbs have its lemma, take the verb with the statement's subject."""
     tree, words = reader.tree, said.subject.text.lower().split()
     for word in tree.words if words else ():
         if word.lemma == said.verb and words[-1] in {part.low for part in tree.children(word, *SUBJECTS)}:
