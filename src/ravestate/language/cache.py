@@ -49,7 +49,7 @@ _unwritten: dict[Path, NDArray[Any]] = {}
 
 
 def mapped(key: object, compute: Callable[[], NDArray[Any]]) -> NDArray[Any]:
-    """Return the array of `compute` as a read-only, memory-mapped file, which takes no memory. See `cached`.
+    """Return the array of `compute` as a read-only map of a file, so that it takes no memory of its own. See `cached`.
 
     If the file cannot be written, the array stays in memory.
     """

@@ -117,7 +117,7 @@ class Encoder:
 
     @property
     def identity(self) -> list[object]:
-        """The model's folder, size, date, and kind of multiplication. Its vectors are the same if all these are."""
+        """The model's folder, size, date, and kind of multiplication. If all of these are the same, so are its vectors."""
         folder = self._loaded().folder
         return [str(folder), self.size, (folder / "model.onnx").stat().st_mtime_ns, "without overflow"]
 

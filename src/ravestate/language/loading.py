@@ -19,7 +19,7 @@ _shown.set()
 
 
 def expect_prompt() -> None:
-    """Note that the console will soon show its prompt. If models loaded before, the prompt would take seconds longer."""
+    """Note that the console will soon show its prompt. If models loaded first, the prompt would come seconds later."""
     _shown.clear()
 
 

@@ -69,7 +69,7 @@ def folder_of(folder: Path | str | None, bundled: str) -> Path:
 
 
 class SentenceModel:
-    """A tokenizer with an ONNX session. Any thread may run it."""
+    """A tokenizer with an ONNX session. Thread-safe."""
 
     def __init__(self, folder: Path) -> None:
         """Load the model in `folder`.

@@ -24,7 +24,7 @@ class Rows:
     """
 
     def __init__(self, packed: NDArray[Any]) -> None:
-        """Take vectors as integers or floats of shape (n, d). Their lengths need not be 1; they are scaled later."""
+        """Take vectors as integers or floats of shape (n, d). The vectors may have any length; they are scaled to 1 later."""
         import numpy as np
 
         self._packed = packed

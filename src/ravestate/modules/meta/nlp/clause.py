@@ -57,7 +57,7 @@ class _Unknown:
 
 
 class Clause:
-    """One clause of a tree. `all_in` makes all clauses of a tree."""
+    """One clause of a tree. Use `all_in` to make the clauses of a tree."""
 
     def __init__(self, tree: Tree, verb: Word, clauses: dict[int, Clause]) -> None:
         self.tree = tree

@@ -77,7 +77,7 @@ def join_contrasts(tree: Tree) -> list[Word]:
 
 
 def _before_not(tree: Tree, negation: Word) -> tuple[Word, Word, Word, Sequence[Word]] | None:
-    """Return the parts of *Leipzig not Leeds*: the tops of both phrases, the negation, and the words of the denied phrase."""
+    """Return the parts of *Leipzig not Leeds*: the heads of both phrases, the negation, and the words of the denied phrase."""
     span = _span(tree, negation.index + 1)
     last = _back(tree, negation.index - 1)
     if last is None or not span:
@@ -128,7 +128,10 @@ def _after_not(tree: Tree, but: Word) -> tuple[Word, Word, Word, Sequence[Word]]
 
 
 def _fragment(tree: Tree) -> list[Word] | None:
-    """Return the joined words of a text without a verb: *Leipzig, not Leeds*. Its tags are unreliable. None for other texts."""
+    """Join the contrast in a text without a verb (*Leipzig, not Leeds*); return None for other texts.
+
+    The tags in such a text are unreliable, so the punctuation, *but* and *not* separate the two sides.
+    """
     parts = [word for word in tree.words if not _begins(tree.words[: word.index + 1])]
     while parts and parts[-1].pos == "PUNCT":
         parts.pop()

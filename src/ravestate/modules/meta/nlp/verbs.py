@@ -113,7 +113,7 @@ def makes_future(tree: Tree, verb: Word) -> bool:
 
 
 def is_infinitive(tree: Tree, verb: Word) -> bool:
-    """Return whether the verb has *to*."""
+    """Return whether *to* stands before the verb, also in *wanna* and *gonna*."""
     return any(child.low in ("to", "na") for child in tree.children(verb, "aux"))
 
 

@@ -15,7 +15,7 @@ from ravestate.modules.meta.nlp.analysis import Analysis
 from .life import Life
 
 SURE = 0.9
-"""The least confidence in an insult. Banter among friends resembles insults."""
+"""The least confidence at which an act or a feeling is a remark. It is high, because banter resembles insults."""
 _YOU = frozenset(["you", "your"])
 _I = frozenset(["i", "me", "my", "myself"])
 _ORDERS = frozenset(["shut", "go", "get", "fuck", "piss", "screw", "stop"])

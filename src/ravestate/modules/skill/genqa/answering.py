@@ -32,11 +32,11 @@ GOOD, VERY_GOOD, HOPELESS = 7.5, 9.0, -4.0
 ENOUGH = 0.4
 """The minimum share (0 to 1) of the question's words in a passage. Passages with fewer words are not read."""
 SHORT = 24
-"""The maximum number of passages from a document that the thread is about. These need no words of the question."""
+"""The maximum number of passages of each document that earlier questions were about. They need no words of the question."""
 LEVEL = 0.8
 """Two scores count as equal if they differ by less than this."""
 COMMON = 20_000
-"""The search skips a word that is in more passages than this, unless all words are so common."""
+"""The search skips a word that is in more passages than this, unless all words of the question are so common."""
 NAMES, KINDS = 0.4, 0.7
 """If a follow-up has only names, the share of its words that a passage is assumed to have: `KINDS` for a passage with a
 word of `Question.kinds`, `NAMES` for other passages."""

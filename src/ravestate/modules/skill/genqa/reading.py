@@ -16,7 +16,7 @@ from .document import Document
 from .passages import passages_of
 
 LARGEST = 64 << 20
-"""The maximum size of a text or a page, in bytes. The whole content is held in memory."""
+"""The maximum size of a text file or an HTML page, in bytes. The whole file is held in memory."""
 _MARKS = {
     codecs.BOM_UTF8: "utf-8", codecs.BOM_UTF32_LE: "utf-32-le", codecs.BOM_UTF32_BE: "utf-32-be", codecs.BOM_UTF16_LE: "utf-16-le",
     codecs.BOM_UTF16_BE: "utf-16-be",

@@ -1,9 +1,9 @@
 """Changes of known facts: statements that end a fact, or replace its value by another.
 
-A statement changes a fact under two conditions. It must be the user's own: the user is the subject, and nobody reports
-the statement. And its verb must end facts of this topic, with the value itself as the object. A correction by sound or
-spelling (*Lora with an L*) works only for a fact that the user or the agent has just mentioned.
-``contrast.py`` reads all other corrections. Other utterances change no facts.
+A statement changes a fact under two conditions. First, the user is its subject, and it is not reported speech. Second, its
+verb ends facts of this topic, with the value itself as the object. A correction by sound or spelling (*Lora with an L*)
+works only for a fact that the user or the agent has just mentioned. ``contrast.py`` reads all other corrections. Other
+utterances change no facts.
 """
 
 from __future__ import annotations
@@ -129,7 +129,7 @@ def switched_in(reader: Reader, said: nlp.Statement) -> Link | None:
 
 
 def renamed_in(reader: Reader, said: nlp.Statement) -> Iterator[tuple[str, str, str]]:
-    """Yield the old topic, the new topic and the name of a known person or pet: *Felix is a dog*, if he is noted as a cat.
+    """Yield the old topic, the new topic and the name of a person or pet: *Felix is a dog*, if the agent took Felix for a cat.
 
     The new topic is empty if the user only denies the old topic: *Tom is my cousin, not a friend*."""
     name, object = said.subject.text, said.object

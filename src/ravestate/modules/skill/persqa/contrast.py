@@ -117,7 +117,7 @@ def _is_about(seen: nlp.Analysis, topic: str, recent: str) -> bool:
 
 
 def _may_retell(seen: nlp.Analysis, one: Told, wrong: str) -> bool:
-    """Return whether a contrast may correct a free statement: it repeats the statement's verb, or has none."""
+    """Return whether a contrast may correct a free statement: the contrast has the statement's verb, or no verb."""
     if not same(one.object, wrong):
         return False
     about = {one.subject.lower(), one.who.lower(), *_SUBJECTS}

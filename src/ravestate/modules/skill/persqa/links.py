@@ -84,7 +84,7 @@ def pursuit_in(reader: Reader, said: nlp.Statement) -> Link | None:
 
 
 def trade_in(reader: Reader, said: nlp.Statement) -> Link | None:
-    """Return the occupation in *I drive trams for a living*, or *I drive trams*, if the agent asked for it."""
+    """Return the occupation in *I drive trams for a living*; if the agent asked for it, also in *I drive trams*."""
     asked = reader.asked == "occupation" and said.verb not in WORDS["states"] | WORDS["passing"] | WORDS["pastimes"]
     living = any(phrase.preposition == "for" and phrase.head == "living" for phrase in said.phrases)
     direct = bool(said.object.text) and not said.object.preposition

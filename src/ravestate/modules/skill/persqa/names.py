@@ -59,7 +59,7 @@ reply = module.signal("reply", payload=Intent)
 """The user has told or asked something about themselves; the payload is the reply."""
 
 noted = module.signal("noted", payload=Noted)
-"""Memory has looked up the user, or has saved what they told."""
+"""Memory has looked up the user, or has saved facts about them."""
 
 forgotten = interloc.forgotten
 """Persqa has forgotten the user, so other modules delete the user's data as well. This is a signal of `interloc`."""

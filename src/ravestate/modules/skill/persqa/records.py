@@ -17,7 +17,7 @@ MOST = 200
 
 
 def named(graph: ontology.Graph, name: str) -> ontology.Node | None:
-    """Return the person of this name; of several, the one with the most relations. Among equals, return the oldest."""
+    """Return the person of this name. If there are several, take the one with the most relations, then the oldest."""
     people = namesakes(graph, name)
     return max(people, key=lambda person: len(graph.relations(person))) if len(people) > 1 else next(iter(people), None)
 

@@ -35,7 +35,7 @@ class Response:
     user: Acquaintance
     errand: Callable[[ontology.Memory | None], Awaitable[Response]] | None = None
     """A task that needs memory and runs before the reply. It takes the memory, or None, and returns the final response.
-    If memory fails, it raises nothing and sets ``talk.trouble``."""
+    If memory fails, the task raises no error, and sets ``talk.trouble``."""
     forgotten: bool = False
 
 
@@ -162,7 +162,7 @@ async def _settled(
 
 
 async def _mistaken(user: Acquaintance, memory: ontology.Memory | None, now: float) -> Response:
-    """Stop treating the user as this person, and ask who they are.
+    """Stop treating the user as the person whom the agent took them for, and ask who they are.
 
     If this conversation created the person, remove them from memory.
     """
@@ -218,7 +218,7 @@ def _told(meaning: Meaning, user: Acquaintance, now: float, chance: random.Rando
 
 
 def _without_idle(meaning: Meaning, user: Acquaintance) -> Meaning:
-    """Keep denials that change no fact as free statements: *you are not from Spain*."""
+    """Turn denials that change no fact into free statements: *you are not from Spain*."""
     idle = [fact for fact in meaning.facts if is_idle(fact, user.known)]
     values = [value.lower() for fact in idle for value in fact.values]
     denials = [

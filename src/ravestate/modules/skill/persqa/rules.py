@@ -93,7 +93,7 @@ async def introduce(ctx: rs.RuleContext) -> rs.Resign | None:
     settings: Settings = ctx.settings
     now = ctx[talk]
     if ctx[who] is not None or NAME not in settings.topics or NAME in now.closed or now.tries.get(NAME):
-        return rs.Resign("the user is known, or was asked")
+        return rs.Resign("the user is known, or was asked for their name already")
     if now.quiet or now.moved or ctx.now - now.spoke < HELLO - 0.1:
         return rs.Resign("the user went on talking, or shows a feeling")
     ctx[talk] = now.asking(NAME, ctx.now)

@@ -73,11 +73,11 @@ class Talk:
     returns: bool = False
     """Whether the user has talked to the agent before, as far as memory knows."""
     newcomer: bool = False
-    """Whether memory did not know the user."""
+    """Whether the user was new to memory."""
     reminded: bool = False
     """Whether the agent has mentioned that it remembers the user."""
     trouble: str = ""
-    """The last failure of memory; empty while it works."""
+    """The last failure of memory; empty while memory works."""
     warned: bool = False
     """Whether the agent has told the user about the trouble."""
     quiet: bool = False

@@ -200,7 +200,7 @@ def recalled(reader: Reader, told: Iterable[Told], known: Facts) -> list[Told]:
 def _naming(told: Sequence[Told]) -> list[Told]:
     """Return the statements that name the people they are about, the last one for each subject.
 
-    Statements that say nothing but a name come before others: *my neighbour is Karl*, *my neighbour Karl plays the drums*.
+    Statements that only give a name take precedence: *my neighbour is Karl* over *my neighbour Karl plays the drums*.
     """
     only = [one for one in told if one.verb in ("be", "be called", "be named") and _has_name(one.object)]
     beside = [one for one in told if _has_name(one.who)]
@@ -208,7 +208,7 @@ def _naming(told: Sequence[Told]) -> list[Told]:
 
 
 def _has_name(words: str) -> bool:
-    """Return whether one of some words is a name, also in lower case."""
+    """Return whether any of the words is a name, even in lower case."""
     lexicon = loaded_lexicon()
     return any(word[:1].isupper() or (lexicon and lexicon.name(word) != word) for word in words.split())
 
@@ -342,7 +342,7 @@ def _verb(reader: Reader, said: nlp.Statement) -> Word | None:
 
 
 def _is_before(tree: Tree, clause: Word, top: Word) -> bool:
-    """Return whether a clause is a sentence of its own before another: *her name is Ida*, she plays the harp."""
+    """Return whether a clause is really an earlier sentence: *her name is Ida*, in *her name is Ida, she plays the harp*."""
     return clause.dep == "ccomp" and clause.index < top.index and bool(tree.children(clause, *SUBJECTS))
 
 

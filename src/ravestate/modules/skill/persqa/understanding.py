@@ -395,4 +395,4 @@ _CALM = frozenset(["astonishing", "boredom", "compliment", "insult"])
 """Feelings that do not stop the agent from asking its next question."""
 _NAMES = frozenset(["be", "call", "name"])
 _NAMED = frozenset(["i", "me", "my name", "it", "this", "that", "you", "they"])
-"""The other side of a denied name: *I am not Ada*, *Ada is not my name*, *don't call me Ada*."""
+"""Words on the other side of a denied name: *I am not Ada*, *Ada is not my name*, *don't call me Ada*."""
