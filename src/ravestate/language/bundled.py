@@ -33,7 +33,7 @@ def requirement(package: str) -> str:
 
 
 def warn_once(log: logging.Logger, error: ModelMissing) -> None:
-    """Log `error` as a warning, once per process. If the sentence models are missing, log how to install them instead."""
+    """Log `error` as a warning, once per process. If the sentence models are missing, log how to install them."""
     message = str(error)
     if not folders_of(SENTENCE_MODELS):
         message = f"the agent talks without the sentence models; to install them: {requirement(SENTENCE_MODELS)}"

@@ -91,7 +91,8 @@ class Encoder:
         """Return the vectors of texts that stay the same each time the program starts, such as examples.
 
         The vectors of the built-in examples come with the package. The first call encodes all other texts, and writes
-        their vectors to a file in the user's cache. If that file is missing or broken, the next call encodes them again.
+        their vectors to a file in the user's cache. If that file is missing or broken, the next call encodes them
+        again.
         """
         model = self._loaded()
         import numpy as np
@@ -117,7 +118,7 @@ class Encoder:
 
     @property
     def identity(self) -> list[object]:
-        """The model's folder, size, date, and kind of multiplication. If all of these are the same, so are its vectors."""
+        """The model's folder, size, date, and kind of multiplication. If these are the same, its vectors are, too."""
         folder = self._loaded().folder
         return [str(folder), self.size, (folder / "model.onnx").stat().st_mtime_ns, "without overflow"]
 

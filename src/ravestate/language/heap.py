@@ -13,7 +13,7 @@ SETTLED = 1.0
 _OPTIONS = ((-8, "MALLOC_ARENA_MAX", 2), (-3, "MALLOC_MMAP_THRESHOLD_", 2**19))
 """Options of glibc: the number in malloc.h, the environment variable and the value.
 
-The first option is the maximum number of heaps. The second is the size in bytes from which a block is outside the heaps.
+The first option is the maximum number of heaps. The second is the size in bytes from which a block is kept elsewhere.
 """
 
 _lock = threading.Lock()
@@ -38,8 +38,8 @@ def keep_few_heaps() -> None:
 def note_load() -> None:
     """Note that a model, examples or another database was loaded, which leaves tens of megabytes of freed memory.
 
-    If nothing else is loaded for `SETTLED` seconds, a thread returns this memory to the system. Otherwise, the next load
-    can use it again.
+    If nothing else is loaded for `SETTLED` seconds, a thread returns this memory to the system. Otherwise, the next
+    load can use it again.
     """
     timer = threading.Timer(SETTLED, give_back)
     timer.daemon = True  # the timer must not keep the process alive

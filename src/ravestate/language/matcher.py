@@ -1,8 +1,8 @@
 """A small classifier of sentences by meaning and spelling, with a class *none of these*.
 
 It is a kernel ridge regression over example sentences. The kernel is a sum of two similarities: a Gaussian of the
-distance in meaning (from an `Encoder`), and the cosine of the spelling (groups of three and four letters). If the shapes
-of two sentences differ, for example *my* and *your*, both similarities are lower.
+distance in meaning (from an `Encoder`), and the cosine of the spelling (groups of three and four letters). If the
+shapes of two sentences differ, for example *my* and *your*, both similarities are lower.
 """
 
 from __future__ import annotations

@@ -74,7 +74,7 @@ class Nearest:
         return self._learnt is not None
 
     def similarities(self, text: str, places: Sequence[int]) -> list[float]:
-        """Return a text's cosine similarity to each of the searched examples at `places`. Before `load`, all are 0.0."""
+        """Return a text's cosine similarity to each searched example at `places`. Before `load`, all are 0.0."""
         return [0.0] * len(places) if self._learnt is None else self._learnt.similarities(plain(text), places)
 
     def compared(self, sentences: Sequence[str], places: Sequence[int]) -> list[float]:

@@ -24,7 +24,7 @@ class Rows:
     """
 
     def __init__(self, packed: NDArray[Any]) -> None:
-        """Take vectors as integers or floats of shape (n, d). The vectors may have any length; they are scaled to 1 later."""
+        """Take vectors as integers or floats of shape (n, d). They may have any length; later, they are scaled to 1."""
         import numpy as np
 
         self._packed = packed
@@ -66,8 +66,8 @@ class Rows:
 def products(vectors: NDArray[np.float32], rows: NDArray[np.float32]) -> NDArray[np.float32]:
     """Return the products of vectors of shape (k, d) and rows of shape (n, d), as an array of shape (k, n).
 
-    Only the calling thread computes. The operator ``@`` would share the work with threads of numpy's library, which keep
-    the cores busy while they wait for each other. When other threads work too, ``@`` takes 20 times as long.
+    Only the calling thread computes. The operator ``@`` would share the work with threads of numpy's library, which
+    keep the cores busy while they wait for each other. When other threads work too, ``@`` takes 20 times as long.
     """
     import numpy as np
 

@@ -139,8 +139,8 @@ def _parts(text: str) -> Iterator[tuple[str, str]]:
 def _score_of_part(part: str, asks: bool) -> int | None:
     """Return the score of a part.
 
-    A part with a question mark counts only if the example that it resembles has the same word order. A sure *yes* or *no*
-    counts only if this is the word order of a question.
+    A part with a question mark counts only if the example that it resembles has the same word order. A sure *yes* or
+    *no* counts only if this is the word order of a question.
     """
     match = bundled_matcher("answers").match(part)
     score = _SCORES[match.name] if match is not None else None
@@ -161,6 +161,6 @@ def _explicit(part: str) -> int | None:
 
 
 def _score_of_sentence(text: str) -> int | None:
-    """Return the score of a text's first sentence as a whole. Use it if the parts have no score, or contradict each other."""
+    """Return the score of a text's first sentence as a whole: its parts have no score, or contradict each other."""
     match = next(iter(bundled_matcher("answers").match_all(sentences(text)[:1])), None)
     return None if match is None else _SCORES[match.name]

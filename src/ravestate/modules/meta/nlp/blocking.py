@@ -28,7 +28,7 @@ class _BlockingFinder(MetaPathFinder):
 
 @contextmanager
 def blocked(*names: str) -> Generator[None]:
-    """Raise an error if this thread imports one of the packages `names` for the first time. Other threads may import them.
+    """Raise an error if this thread imports one of the packages `names` for the first time. Other threads may.
 
     Example:
         >>> with blocked("this"):

@@ -318,7 +318,7 @@ class Clause:
         return [phrase_of(self.tree, noun)]
 
     def _objects(self) -> list[tuple[Part, bool]]:
-        """Return the objects: the first kind, in the README's order, that the clause has. For the flags, see `_parts`."""
+        """Return the objects: the first kind, in the README's order, that the clause has. Flags: see `_parts`."""
         tree, verbs = self.tree, self.verbs
         if lacks_copula(tree, self.verb):
             return self._written([self.verb], self.verb)
@@ -366,7 +366,7 @@ class Clause:
 
     @cached_property
     def _beside(self) -> list[Word]:
-        """The predicate, if the parser attaches it to the subject by mistake: *is Berlin the capital*, *are cats nice*."""
+        """The predicate, if the parser attaches it to the subject by mistake: *is Rome a city*, *are cats nice*."""
         subjects = self.own_subjects if self._is_copula and self.unknown is None else []
         beside = self.tree.children_of(subjects, "appos", "amod", "npadvmod")
         asked = bool(subjects) and subjects[0].index > self.verb.index
@@ -393,7 +393,7 @@ class Clause:
         heads = [head, *self.tree.children(head, "advmod")]  # as in "next to the station"
         phrases = [word for word in self.tree.children_of(heads, "prep", "dative") if of or word.low != "of"]
         for phrase in sorted(phrases, key=lambda word: (word.index < head.index, word.index)):
-            # Follow both prepositions of "out of" and of "in Berlin and in Paris", but only the first of "from one to two".
+            # Follow both prepositions of "out of" and "in Rome and in Bern", but only the first of "from May to July".
             more = ("conj",) if self.tree.children(phrase, "pobj") else ("prep", "conj")
             prepositions = [phrase, *self.tree.children(phrase, *more)]
             nouns = [noun for noun in self.tree.children_of(prepositions, "pobj", "pcomp") if noun.low != "of"]
@@ -425,7 +425,7 @@ class Clause:
     # --------------------------------------------------------------------------------------- writing
 
     def _written(self, heads: Iterable[Word], verb: Word | None = None) -> list[tuple[Part, bool]]:
-        """Return the phrases of `heads` and their conjuncts, each with a flag: whether a *not* denies this phrase alone."""
+        """Return the phrases of `heads` and their conjuncts, each with a flag: whether a *not* denies it alone."""
         found: list[tuple[Part, bool]] = []
         for head in heads:
             for word in conjuncts(self.tree, head, self._clauses):

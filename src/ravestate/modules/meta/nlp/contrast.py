@@ -33,7 +33,7 @@ _EXCEPTED = word_set("anything anyone anybody anywhere nothing nobody none every
 
 @dataclass(frozen=True, slots=True)
 class Contrast:
-    """The asserted phrase (`right`) and the denied phrase (`wrong`): *Leipzig* and *Leeds*, in *it's Leipzig, not Leeds*."""
+    """The asserted phrase (`right`) and the denied phrase (`wrong`): *Bern* and *Bonn*, in *it's Bern, not Bonn*."""
 
     right: Phrase
     wrong: Phrase
@@ -77,7 +77,7 @@ def join_contrasts(tree: Tree) -> list[Word]:
 
 
 def _before_not(tree: Tree, negation: Word) -> tuple[Word, Word, Word, Sequence[Word]] | None:
-    """Return the parts of *Leipzig not Leeds*: the heads of both phrases, the negation, and the words of the denied phrase."""
+    """Return the parts of *Bern not Bonn*: the heads of both phrases, the negation, the words of the denied phrase."""
     span = _span(tree, negation.index + 1)
     last = _back(tree, negation.index - 1)
     if last is None or not span:
@@ -100,7 +100,7 @@ def _before_not(tree: Tree, negation: Word) -> tuple[Word, Word, Word, Sequence[
 
 
 def _after_not(tree: Tree, but: Word) -> tuple[Word, Word, Word, Sequence[Word]] | None:
-    """Return the parts of *not Leeds but Leipzig* and of *not Leeds, Leipzig*, as `_before_not` does."""
+    """Return the parts of *not Bonn but Bern* and of *not Bonn, Bern*, as `_before_not` does."""
     span, last = _span(tree, but.index + 1), _back(tree, but.index - 1)
     right = _top(tree, span) if span else None
     if last is None or right is None:

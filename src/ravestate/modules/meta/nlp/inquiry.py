@@ -164,7 +164,7 @@ def _parts(words: Sequence[Word]) -> list[list[Word]]:
 
 
 def _stands_apart(parts: Sequence[Sequence[Word]], part: Sequence[Word], tree: Tree) -> bool:
-    """Return whether a colon or a single word precedes a part, so it is no relative clause: *Mum, who made the moon*."""
+    """Return whether a colon or a single word precedes a part. If so, it is no relative clause: *Mum, who made it*."""
     before = tree.before(part[0])
     return before is not None and (before.low == ":" or (before.low == "," and parts.index(part) == len(parts[0]) == 1))
 

@@ -33,8 +33,8 @@ _RULE = "learn_intents"
 def intent(module: rs.Module, name: str, *, examples: Sequence[str] | str | Path) -> rs.Signal[Match]:
     """Declare a signal for utterances that resemble `examples`; its payload is the `Match`.
 
-    All intents of a context compete with one another, with the user's acts (``acts.yaml``), and with everyday sentences.
-    Each sentence raises only the signal of its best match. Two or three examples are enough for a start.
+    All intents of a context compete with one another, with the user's acts (``acts.yaml``), and with everyday
+    sentences. Each sentence raises only the signal of its best match. Two or three examples are enough for a start.
 
     Args:
         module: The module of the signal, which must require ``nlp``.

@@ -56,7 +56,7 @@ class Introduction:
     """Whether a verb stands before the introduction: *my dog isn't Rex, it's Max*."""
 
     def named(self, persons: Collection[str]) -> Introduction | None:
-        """Return the introduction, with a capital for the name, if the utterance says more than the name; otherwise None.
+        """Return the introduction, with a capital for the name; None if the utterance says nothing but the name.
 
         Unless the introduction is `sure`, the name must be among `persons`.
         """

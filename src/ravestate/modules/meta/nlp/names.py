@@ -27,8 +27,8 @@ class Settings(rs.Settings):
     agent_names: tuple[str, ...] = ("Ravestate",)
     """The agent's names; by default, ``interloc.agent``. A text with one of these names is about the agent."""
     model: str = ""
-    """The name of a language model that helps to read the user's words; by default, there is none. The model's server must
-    support OpenAI's protocol with JSON schemas."""
+    """The name of a language model that helps to read the user's words; by default, there is none. The model's server
+    must support OpenAI's protocol with JSON schemas."""
     base_url: str = "http://localhost:11434/v1"
     """The address of the model's server; by default, Ollama on this machine."""
     api_key: SecretStr | None = None
@@ -50,7 +50,7 @@ class ContextLock(asyncio.Lock):
 module = rs.Module("nlp", requires=[rawio, interloc], settings=Settings)
 
 reader: rs.Slot[ModelReader | None] = module.slot("reader", None, input=True)
-"""The reader with a language model; None if the settings name no model. A rule can write a reader with another model."""
+"""The reader with a language model; None if the settings name no model. A rule can write a reader of its own."""
 
 text: rs.Slot[str] = module.slot("text", "", always=True)
 """The last analysed utterance. Rules that need both the text and its analysis wait for this slot, not for

@@ -188,7 +188,7 @@ def _found(normal: Normal, doc: Any) -> tuple[Tree, tuple[Entity, ...]]:
 
 
 def _with_names(words: list[Word]) -> list[Word]:
-    """Tag nouns as names: with a capital inside a sentence, unless most words have one; at the start, see `_is_name`."""
+    """Tag nouns as names: with a capital inside a sentence, unless most words have one; at the start, by `_is_name`."""
     capital = [word.text[:1].isupper() and word.text[1:].islower() for word in words]
     inside = 2 * sum(capital) <= len(words)
     starts = {0, *(word.index + 1 for word in words if word.pos == "PUNCT")}

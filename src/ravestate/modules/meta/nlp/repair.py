@@ -99,7 +99,7 @@ def _make_verb(tree: Tree, words: list[Word], auxiliary: Word) -> None:
 
 
 def _make_passive(tree: Tree, words: list[Word], be: Word) -> None:
-    """Turn a participle after its noun into the verb: *eaten* in *was it eaten by the dog*, *crying* in *is Ann crying*."""
+    """Turn a participle after its noun into the verb: *eaten* in *was it eaten by ants*, *crying* in *is he crying*."""
     nouns = [word for word in tree.children(be, "nsubj", "attr") if word.index > be.index]
     for participle in tree.children_of(nouns, "acl"):
         if be.low in _BE and be.dep == "ROOT" and tree.children(participle, "agent"):

@@ -74,7 +74,7 @@ def statements_of(
 
 
 class _Assertion:
-    """The flags that all triples of one clause share: whether the clause is past, imagined, wanted, reported, or asked."""
+    """The flags that all triples of a clause share: whether it is past, imagined, wanted, reported, or asked."""
 
     def __init__(self, clause: Clause, entities: Sequence[Entity]) -> None:
         self._tree = clause.tree

@@ -27,7 +27,7 @@ class Topic:
     unnamed: tuple[str, ...] = ()
     """Answers to a question about something particular (*can you dance*) that is not a value of a fact."""
     remarks: tuple[str, ...] = ()
-    """Regular expressions for remarks: utterances that only this module should answer. An expression matches whole words."""
+    """Regular expressions for remarks, which only this module should answer. An expression matches whole words."""
     acts: tuple[str, ...] = ()
     """The user's acts and feelings that this topic answers, as `nlp.analysis` names them: ``insult``, ``grief``."""
 

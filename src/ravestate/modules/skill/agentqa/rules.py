@@ -28,8 +28,8 @@ from .telling import telling, without_question
 CERTAIN = 0.7
 """The least confidence at which the agent accepts the topic of a question without further evidence."""
 STATED = 0.85
-"""The same for a statement. This threshold is higher, because a statement may resemble a question: *I don't know what to
-say*."""
+"""The same for a statement. This threshold is higher, because a statement may resemble a question: *I don't know what
+to say*."""
 STRAY = 0.9
 """The same for a question that does not mention the agent, and asks for advice: *what if I forget my lines*."""
 _OWN = frozenset(("what_if", "how_to", "should", "say_what", "recommend", "worth", "predict"))
@@ -210,7 +210,7 @@ def _returns(seen: Analysis) -> bool:
 
 
 def intent(topic: str, phrases: Sequence[str]) -> Intent:
-    """Return an intent with phrases whose facts are filled in. Remaining braces belong to facts, so they are escaped."""
+    """Return an intent with phrases whose facts are filled in. Other braces belong to facts, so they are escaped."""
     texts = [phrase.replace("{", "{{").replace("}", "}}") for phrase in phrases]
     return Intent(f"agentqa:{topic}", phrases={"en": texts})
 

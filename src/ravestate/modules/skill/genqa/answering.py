@@ -27,12 +27,12 @@ RETRIEVED = 16
 READ = (1, 1, 2, 4, 8, 8)
 """The sizes of the batches in which passages are read until one is good enough. Only a follow-up uses the last two."""
 GOOD, VERY_GOOD, HOPELESS = 7.5, 9.0, -4.0
-"""Best scores that end the reading: `VERY_GOOD` after the first passage, and `GOOD` after later passages. A best score of
-`HOPELESS` or less ends the reading after four passages, except for a follow-up."""
+"""Best scores that end the reading: `VERY_GOOD` after the first passage, and `GOOD` after later passages. A best score
+of `HOPELESS` or less ends the reading after four passages, except for a follow-up."""
 ENOUGH = 0.4
 """The minimum share (0 to 1) of the question's words in a passage. Passages with fewer words are not read."""
 SHORT = 24
-"""The maximum number of passages of each document that earlier questions were about. They need no words of the question."""
+"""The maximum number of passages of each document that the thread is about. They need no words of the question."""
 LEVEL = 0.8
 """Two scores count as equal if they differ by less than this."""
 COMMON = 20_000
@@ -77,7 +77,7 @@ class Answer:
 
 
 class Answerer:
-    """An index with a reader. The answerer opens the index at the first question, and again if the index file is replaced.
+    """An index with a reader. It opens the index file at the first question, and again if the file is replaced.
 
     Thread-safe.
 

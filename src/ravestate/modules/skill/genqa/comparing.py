@@ -62,7 +62,7 @@ def compared(heard: Parse, thread: Sequence[Turn], ask: Callable[[str], Answer])
 
 
 def aged(heard: Parse, thread: Sequence[Turn], ask: Callable[[str], Answer]) -> Answer | None:
-    """Return the age of a person at their death or at another event; None if no age is asked for, or a date is missing."""
+    """Return a person's age at their death or at another event; None if no age is asked for, or a date is missing."""
     words = [word for word in heard.asked if word.pos != "PUNCT"]
     low = [word.low for word in words]
     when = low.index("when", 1) if "when" in low[1:] else len(words)
@@ -145,7 +145,7 @@ def _asked(name: str, base: str, noun: str, ask: Callable[[str], Answer]) -> Ans
 
 
 def begun(name: str, ask: Callable[[str], Answer]) -> Answer | None:
-    """Return the answer with the date when `name` was born, founded or built; None if no passage about `name` has one."""
+    """Return the answer with the date when `name` was born, founded or built; None if no passage about it has one."""
     answers = [ask(f"when was {name} {done}?") for done in ("born", "founded", "built")]
     bare = name.lower().removeprefix("the ")
     starts = (bare, "she ", "he ", "it ")

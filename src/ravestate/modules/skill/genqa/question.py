@@ -95,7 +95,7 @@ def parse(text: str) -> Parse:
 
 
 def parsed(tree: Tree, entities: Sequence[Entity], kind: QuestionWord | None) -> Parse:
-    """Return the parse. Its question is the first sentence with a question word or a question mark, or else the last."""
+    """Return the parse. Its question is the first sentence with a question word or mark, or else the last sentence."""
     sentences = [tree.subtree(word) for word in tree.words if word.head == word.index and word.pos != "PUNCT"]
     asking = [s for s in sentences if any(word.tag in WH for word in s) or s[-1].text.endswith("?")]
     asked = (asking or sentences[-1:] or [[]])[0]

@@ -191,7 +191,7 @@ def focused(question: str, answer: str) -> str:
 
 
 def both(one: str, other: str) -> tuple[float, float, str] | None:
-    """Return one number of each text in the same unit, and the word for this unit; None if no two numbers are comparable."""
+    """Return one number of each text in the same unit, and the word for the unit; None if no numbers are comparable."""
     pairs = ((left, left.beside(right)) for left in measured(one) for right in measured(other))
     return next(((*values, left.word) for left, values in pairs if values is not None), None)
 

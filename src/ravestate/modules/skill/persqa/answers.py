@@ -40,7 +40,7 @@ _PIECE = re.compile(
 )
 """The end of an answer that a clause follows: *hiking! And I'm in a club*."""
 _CALL = re.compile(_PIECE.pattern.replace("|why|what|how|where|who", ""), re.IGNORECASE)
-"""The same for a name. A question after the name does not end it, because the name may be a call: *Tom, where are you?*."""
+"""The same for a name. A question after it is no end, because the name may be a call: *Tom, where are you?*."""
 _WHERE = re.compile(r"\s(?:in|at|from|for|on|near|by)\s(.+)$", re.IGNORECASE)
 _PLACED = frozenset(["name", "people", "place", "work", "subject"])
 """Kinds of values that leave out a place after them: in *teacher at a school*, the value is *teacher*."""

@@ -1,9 +1,9 @@
 """Changes of known facts: statements that end a fact, or replace its value by another.
 
-A statement changes a fact under two conditions. First, the user is its subject, and it is not reported speech. Second, its
-verb ends facts of this topic, with the value itself as the object. A correction by sound or spelling (*Lora with an L*)
-works only for a fact that the user or the agent has just mentioned. ``contrast.py`` reads all other corrections. Other
-utterances change no facts.
+A statement changes a fact under two conditions. First, the user is its subject, and it is not reported speech. Second,
+its verb ends facts of this topic, with the value itself as the object. A correction by sound or spelling (*Lora with an
+L*) works only for a fact that the user or the agent has just mentioned. ``contrast.py`` reads all other corrections.
+Other utterances change no facts.
 """
 
 from __future__ import annotations
@@ -129,7 +129,7 @@ def switched_in(reader: Reader, said: nlp.Statement) -> Link | None:
 
 
 def renamed_in(reader: Reader, said: nlp.Statement) -> Iterator[tuple[str, str, str]]:
-    """Yield the old topic, the new topic and the name of a person or pet: *Felix is a dog*, if the agent took Felix for a cat.
+    """Yield the old topic, the new topic and the name of a person or pet: *Rex is a dog*, if Rex was taken for a cat.
 
     The new topic is empty if the user only denies the old topic: *Tom is my cousin, not a friend*."""
     name, object = said.subject.text, said.object
@@ -182,7 +182,7 @@ def is_brief(said: nlp.Statement) -> bool:
 
 
 def may_correct(seen: nlp.Analysis, topic: str) -> bool:
-    """Return whether an utterance may correct a fact just mentioned: its only verbs are *say*, *mean*, *call* and the like."""
+    """Return whether an utterance may correct a fact just mentioned: its only verbs are *say*, *mean* and the like."""
     opposed = {text for one in seen.contrasts for text in (one.right.text, one.wrong.text)}  # the tagger may see verbs
     finite = {
         word.lemma for word in seen.tree.words if word.tag in ("VBD", "VBZ", "VBP", "MD") and word.text not in opposed

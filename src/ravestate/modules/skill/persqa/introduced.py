@@ -1,7 +1,7 @@
 """The user's name in an introduction: *it's me, Ilka*, *Ilka here*, *I'm Ilka*.
 
-`nlp` finds the words in the place of a name. A word that English does not have is a name. For a word that English has, the
-named entities or the examples decide. The parser and the examples know few of the world's names.
+`nlp` finds the words in the place of a name. A word that English does not have is a name. For a word that English has,
+the named entities or the examples decide. The parser and the examples know few of the world's names.
 """
 
 from __future__ import annotations

@@ -34,7 +34,7 @@ class Link:
 
 
 def predicate_of(said: nlp.Statement) -> str:
-    """Return the predicate without *not*, and without verbs that only begin or continue it: *work* of *start to work*."""
+    """Return the predicate without *not*, and without verbs of beginning or continuing: *work* of *start to work*."""
     words = said.triple.predicate.removeprefix("not ").split()
     while len(words) > 1 and (words[0] in WORDS["beginning"] or words[:2] == ["end", "up"]):
         first = 2 if words[0] == "end" or words[1] == "to" else 1

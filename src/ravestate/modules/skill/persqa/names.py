@@ -53,7 +53,7 @@ told: rs.Collection[Told] = module.collection("told")
 """The user's free statements about themselves and others, oldest first: *Jonas plays the violin*."""
 
 talk: rs.Slot[Talk] = module.slot("talk", Talk(), type=Talk)
-"""The state of the conversation about the user: for example, the open question, and the topics that the user refused."""
+"""The state of the conversation about the user, such as the open question, and the topics that the user refused."""
 
 reply = module.signal("reply", payload=Intent)
 """The user has told or asked something about themselves; the payload is the reply."""

@@ -114,7 +114,7 @@ class Reader:
         return [*(Fact(topic, values) for topic, values in told.items() if values), *struck]
 
     def asks(self) -> Fact | None:
-        """Return the fact that the user asks for. Its values are those that the user wants confirmed: *do I live in Ulm*."""
+        """Return the fact that the user asks for. Its values are those to confirm or deny: *do I live in Ulm*."""
         kinds = nlp.QuestionWord
         for said in self.seen.statements:
             if not said.question or said.conditional:

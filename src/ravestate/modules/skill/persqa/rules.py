@@ -26,8 +26,8 @@ from .understanding import understand
 from .wording import asking, memorable, stating
 
 HELLO = 3.0
-"""Seconds from the user's first hello to the agent's question for their name. If the user speaks again in this time, the
-agent does not ask."""
+"""Seconds from the user's first hello to the agent's question for their name. If the user speaks again in this time,
+the agent does not ask."""
 
 T = TypeVar("T")
 

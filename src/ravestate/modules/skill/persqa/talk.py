@@ -105,7 +105,7 @@ class Talk:
     moved: bool = False
     """Whether the user's last utterance shows a feeling or is a joke."""
     busy: bool = False
-    """Whether the user's last utterance asks something, or tells at some length something that is no fact about them."""
+    """Whether the user's last utterance asks something, or tells at some length something that persqa does not note."""
 
     @property
     def asked_before(self) -> bool:

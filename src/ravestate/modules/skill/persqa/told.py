@@ -85,8 +85,8 @@ class Told:
 def told_in(reader: Reader, before: Sequence[Told] = ()) -> tuple[list[Told], list[Told]]:
     """Return the free statements of an utterance, and all its statements.
 
-    In both lists, a name replaces the subject where possible. *He* becomes the person named last, and *my sister* becomes
-    the known sister.
+    In both lists, a name replaces the subject where possible. *He* becomes the person named last, and *my sister*
+    becomes the known sister.
     """
     free: list[Told] = []
     heard: list[Told] = []
@@ -342,7 +342,7 @@ def _verb(reader: Reader, said: nlp.Statement) -> Word | None:
 
 
 def _is_before(tree: Tree, clause: Word, top: Word) -> bool:
-    """Return whether a clause is really an earlier sentence: *her name is Ida*, in *her name is Ida, she plays the harp*."""
+    """Return whether a clause is really an earlier sentence: *her name is Ida*, in *her name is Ida, she sings*."""
     return clause.dep == "ccomp" and clause.index < top.index and bool(tree.children(clause, *SUBJECTS))
 
 
