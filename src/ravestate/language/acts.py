@@ -19,7 +19,7 @@ LONGEST = 2000
 COURTESY = frozenset({"thanks", "acknowledgement", "apology", "wish"})
 """Acts that often accompany other acts: "thanks, bye", "okay, hello"."""
 FORMULAS = frozenset({"greeting", "farewell", *COURTESY})
-"""Acts with formulas: short examples that may precede other words, as in "hello, what is your name"."""
+"""Acts whose short examples (formulas) may precede other words, as in "hello, what is your name"."""
 FORMULA_WORDS = 4
 """The maximum number of words of a formula."""
 ADDRESS_WORDS = 3
@@ -58,7 +58,7 @@ def heard(text: str, names: Collection[str] = ()) -> tuple[str, ...]:
 def acts(sentences: Sequence[str]) -> dict[str, Match]:
     """Return the acts in the sentences of an utterance, each with the sentence that shows it best.
 
-    Until the matcher of the acts is loaded, only sentences that equal an example word for word are recognised.
+    Until the matcher of the acts is loaded, only examples are recognised word for word: whole sentences, and formulas.
 
     Example:
         >>> sorted(acts(["Thanks, bye!"]))
@@ -73,7 +73,7 @@ def acts(sentences: Sequence[str]) -> dict[str, Match]:
 
 
 def only(act: str, sentences: Sequence[str]) -> bool:
-    """Return whether `act` is the only act of an utterance, apart from courtesies and a few other words.
+    """Return whether an utterance contains `act`, and apart from it only courtesies and a few other words.
 
     Example:
         >>> only("greeting", ["Hello, my dear robot!"]), only("greeting", ["Hello, who are you?"])
@@ -91,7 +91,7 @@ def only(act: str, sentences: Sequence[str]) -> bool:
 
 
 def is_playful(text: str) -> bool:
-    """Return whether a text has a sign of play, so that an insult in it is banter: *you are hopeless lol*."""
+    """Return whether a text is playful. If it is, an insult in it is banter: *you are hopeless lol*."""
     return _PLAYFUL.search(text) is not None
 
 
@@ -104,7 +104,7 @@ def _read(sentences: Sequence[str]) -> list[_Sentence]:
 
 
 def _taken_back(matcher: Matcher, found: Match | None) -> bool:
-    """Return whether a negation cancels a wish. "Don't talk" stays a wish, because the wish itself is negative."""
+    """Return whether a negation cancels a wish. "Don't talk" stays a wish, because its example is also negative."""
     if found is None or found.name not in WISHES or plain(found.text) in matcher.exact:
         return False
     asserted = _NEGATION.sub("", found.text, count=1)

@@ -1,4 +1,4 @@
-"""Models in packages of their own: find the files of a package, and warn once if a needed package is missing."""
+"""Find models that come in packages of their own, and warn once if such a package is missing."""
 
 from __future__ import annotations
 
@@ -33,10 +33,10 @@ def requirement(package: str) -> str:
 
 
 def warn_once(log: logging.Logger, error: ModelMissing) -> None:
-    """Log one warning per process about the missing sentence models, with the command that installs them."""
+    """Log `error` as a warning, once per process. If the sentence models are missing, log how to install them."""
     message = str(error)
     if not folders_of(SENTENCE_MODELS):
-        message = f"the agent talks without the sentence models; to install: {requirement(SENTENCE_MODELS)}"
+        message = f"the agent talks without the sentence models; to install them: {requirement(SENTENCE_MODELS)}"
     with _warning:
         if message in _warned:
             return

@@ -18,13 +18,13 @@ if TYPE_CHECKING:
     from numpy.typing import NDArray
 
 BYTES = 80_000_000
-"""The maximum size of the cache. When the cache exceeds this size, its oldest files are removed."""
+"""The maximum size of the cache in bytes. Above it, the least recently used files are removed."""
 
 
 def cached(key: object, compute: Callable[[], Mapping[str, NDArray[Any]]]) -> Mapping[str, NDArray[Any]]:
     """Return the arrays of `compute`; read them from a file if an earlier call with the same key wrote it.
 
-    If the file is missing or broken, or the folder cannot be written, `compute` runs again.
+    If the file is missing, broken, or could not be written, `compute` runs again.
 
     Args:
         key: All inputs that the arrays depend on, as a value that JSON can write.
@@ -38,7 +38,7 @@ def cached(key: object, compute: Callable[[], Mapping[str, NDArray[Any]]]) -> Ma
             arrays = {name: found[name] for name in found.files}
         os.utime(file)
         return arrays
-    except Exception:  # a damaged file may raise anything
+    except Exception:  # a damaged file may raise any exception
         arrays = dict(compute())
     _write(file, lambda out: np.savez(out, allow_pickle=False, **arrays))
     return arrays
@@ -49,7 +49,7 @@ _unwritten: dict[Path, NDArray[Any]] = {}
 
 
 def mapped(key: object, compute: Callable[[], NDArray[Any]]) -> NDArray[Any]:
-    """Return the array of `compute` as a read-only, memory-mapped file, so that it needs no memory. See `cached`.
+    """Return the array of `compute` as a read-only map of a file, so that it takes no memory of its own. See `cached`.
 
     If the file cannot be written, the array stays in memory.
     """
@@ -77,7 +77,7 @@ def mapped(key: object, compute: Callable[[], NDArray[Any]]) -> NDArray[Any]:
 
 
 def _sum(file: Path) -> bytes:
-    """Return the checksum of a file without reading the file into memory as a whole. 20 MB take 20 ms."""
+    """Return the checksum of a file, and read only 1 MB of it at a time. A file of 20 MB takes 20 ms."""
     found = 0
     with file.open("rb") as parts:
         while part := parts.read(1 << 20):
@@ -91,7 +91,7 @@ def _file_of(key: object, ending: str) -> Path:
 
 
 def _write(file: Path, write: Callable[[IO[bytes]], object]) -> bool:
-    """Write a file of the cache as a whole, or not at all; return whether that was possible."""
+    """Write a file of the cache as a whole, or not at all; return whether it was written."""
     name = ""
     try:
         file.parent.mkdir(parents=True, exist_ok=True)
@@ -109,7 +109,7 @@ def _write(file: Path, write: Callable[[IO[bytes]], object]) -> bool:
 
 
 def _limit(folder: Path) -> None:
-    """Remove the oldest files of the cache until it has at most `BYTES`."""
+    """Remove the least recently used files of the cache until it has at most `BYTES`."""
     found: list[tuple[int, int, str]] = []
     for entry in os.scandir(folder):
         with contextlib.suppress(FileNotFoundError):  # another process has renamed or removed this file

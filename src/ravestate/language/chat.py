@@ -50,7 +50,7 @@ class Backend(Protocol):
             max_tokens: The maximum number of tokens (each about three quarters of an English word).
             temperature: The randomness: 0 always takes the likeliest word, 1 is the model's own distribution.
             seed: The same seed and messages give the same answer, if the model allows it.
-            stop: Texts before which the model stops.
+            stop: The model stops before it would write one of these texts.
 
         Raises:
             PlatformError: The model failed, or its server refused, stalled or disconnected.

@@ -6,9 +6,9 @@ import os
 
 
 def cores() -> int:
-    """Return the number of cores that this process may use; the variable ``OMP_NUM_THREADS`` may lower it.
+    """Return the number of cores that this process may use. The variable ``OMP_NUM_THREADS`` can lower this number.
 
-    Any more threads than cores would only wait for each other.
+    More threads than cores would only wait for each other.
     """
     allowed = getattr(os, "sched_getaffinity", None)  # only Linux has this function
     found = len(allowed(0)) if allowed is not None else os.cpu_count() or 1

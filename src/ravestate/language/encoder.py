@@ -26,12 +26,12 @@ REMEMBERED = 1024
 class Encoder:
     """An encoder of sentences: similar meanings give similar vectors.
 
-    Making an encoder takes no time. Its first use loads the shared model (0.3 s). Any thread may use it.
+    Making an encoder takes no time. Its first use loads the shared model (0.3 s). Thread-safe.
 
     Example:
         ::
 
-            mine, yours = Encoder().encode(["What is your name?", "How are you called?"])
+            mine, yours = Encoder().encode(["What is your name?", "What are you called?"])
             similarity = float(mine @ yours)      # the cosine: the vectors have length 1
     """
 
@@ -58,9 +58,9 @@ class Encoder:
         self._loaded()
 
     def encode(self, texts: Sequence[str]) -> NDArray[np.float32]:
-        """Return a row for each text: shape (n, d), float32, each of length 1.
+        """Return one vector of length 1 for each text, as the rows of an array: shape (n, d), float32.
 
-        A new sentence takes about 3 ms on one core; a recent one takes no time. The model reads the first 512 tokens.
+        A new sentence takes about 3 ms on one core; a recent one takes no time. The model reads 512 tokens per text.
         """
         model = self._loaded()  # load the model before numpy is imported: the model's error says what to install
         import numpy as np
@@ -91,7 +91,8 @@ class Encoder:
         """Return the vectors of texts that stay the same each time the program starts, such as examples.
 
         The vectors of the built-in examples come with the package. The first call encodes all other texts, and writes
-        their vectors to a file in the user's cache. If that file is missing or broken, they are encoded again.
+        their vectors to a file in the user's cache. If that file is missing or broken, the next call encodes them
+        again.
         """
         model = self._loaded()
         import numpy as np
@@ -117,7 +118,7 @@ class Encoder:
 
     @property
     def identity(self) -> list[object]:
-        """The folder, size and date of the model, and its way of multiplying; together they identify its vectors."""
+        """The model's folder, size, date, and kind of multiplication. If these are the same, its vectors are, too."""
         folder = self._loaded().folder
         return [str(folder), self.size, (folder / "model.onnx").stat().st_mtime_ns, "without overflow"]
 
@@ -133,7 +134,7 @@ class Encoder:
         if self._mean is None:
             self._mean = _pools_by_mean(model.folder)
         rows = np.zeros((len(texts), model.width), dtype=np.float32)
-        # One text per run: a quantised model takes its scale from the batch, so other texts would change a vector.
+        # One text per run: a quantised model scales by the whole batch, so other texts would change a text's vector.
         for number, text in enumerate(texts):
             _, hidden, mask = next(model.run([text]))
             rows[number] = _pooled(hidden, mask, self._mean)[0]

@@ -1,4 +1,4 @@
-"""Example sentences by class, from YAML files that designers may write too."""
+"""Example sentences by class, read from YAML files. Designers can write such files too."""
 
 from __future__ import annotations
 
@@ -26,7 +26,7 @@ class Examples:
 
 
 def read_examples(file: Path | Traversable) -> Examples:
-    """Read a mapping from classes to sentences; the key ``none`` has the sentences of no class.
+    """Read a mapping from classes to sentences. The key ``none`` holds sentences that belong to no class.
 
     Raises:
         DeclarationError: The file is not such a mapping.
@@ -51,7 +51,7 @@ def parse_examples(found: Any, source: str) -> Examples:
     for name, texts in cast("Mapping[Any, Any]", found).items():
         listed = cast("Sequence[Any]", texts) if isinstance(texts, list) else None
         if not listed or not all(isinstance(text, str) and text.strip() for text in listed):
-            raise DeclarationError(f"{source}: {name!r} needs a list of sentences; quote yes, no and numbers")
+            raise DeclarationError(f"{source}: {name!r} needs a list of sentences; put yes, no and numbers in quotes")
         classes[str(name)] = tuple(listed)
     return Examples(classes, classes.pop(NONE, ()))
 

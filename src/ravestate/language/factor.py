@@ -15,8 +15,8 @@ def factor(matrix: NDArray[Any]) -> NDArray[Any]:
     """Return the inverse of the Cholesky factor of a symmetric, positive definite matrix of shape (n, n).
 
     If the result is R, the inverse of the matrix is ``R.T @ R``. The function factors the upper left quarter and its
-    Schur complement, and joins both results. So nearly all the work is products of large matrices, the fastest work of
-    a processor.
+    Schur complement, and joins both results. So nearly all the work is products of large matrices, which a processor
+    computes fastest.
     """
     import numpy as np
 

@@ -15,9 +15,9 @@ SORROWS = frozenset({"grief", "illness", "sadness", "loneliness", "worry", "fail
 SORROW_LASTS = 12
 """A sorrow lasts for this number of the user's utterances, including the utterance that shows it."""
 SURE = 0.8
-"""The least confidence with which a question shows surprise: "how do you know that?"."""
+"""The least confidence at which a question such as "how do you know that?" shows surprise."""
 SHORTEST = 3
-"""The minimum number of words in a clause that shows a feeling by itself.
+"""The minimum number of words in a clause that shows a feeling although its whole sentence shows none.
 
 The clause "brilliant" in "brilliant, it is broken" is shorter, so it is not praise.
 """
@@ -61,7 +61,7 @@ def clauses(sentences: Sequence[str], names: Collection[str] = ()) -> list[str]:
 
 
 def _clauses(sentence: str, alone: bool) -> list[str]:
-    """Return the clauses of a compound sentence; with `alone`, only those of at least `SHORTEST` words."""
+    """Return the clauses of a compound sentence; if `alone`, only those of at least `SHORTEST` words."""
     parts = [part for part in _CLAUSE_END.split(sentence) if plain(part)]
     least = SHORTEST if alone else 1
     return [part for part in parts if len(part.split()) >= least] if len(parts) > 1 else []

@@ -13,7 +13,7 @@ SETTLED = 1.0
 _OPTIONS = ((-8, "MALLOC_ARENA_MAX", 2), (-3, "MALLOC_MMAP_THRESHOLD_", 2**19))
 """Options of glibc: the number in malloc.h, the environment variable and the value.
 
-The first option is the maximum number of heaps. The second is the size in bytes from which a block is outside them.
+The first option is the maximum number of heaps. The second is the size in bytes from which a block is kept elsewhere.
 """
 
 _lock = threading.Lock()
@@ -24,7 +24,7 @@ _pending: list[threading.Timer] = []
 def keep_few_heaps() -> None:
     """Let the threads of the process share two heaps, and keep large blocks out of them.
 
-    By default glibc makes up to eight heaps per core. Each keeps tens of megabytes that a model has used in its thread.
+    By default, glibc makes up to eight heaps per core. Each heap keeps tens of megabytes that a model has used.
     Glibc also puts ever larger blocks into the heaps. A freed block between small blocks cannot go back to the system.
     The environment variables ``MALLOC_ARENA_MAX`` and ``MALLOC_MMAP_THRESHOLD_`` take precedence. If the C library is
     not glibc, do nothing.
@@ -36,10 +36,10 @@ def keep_few_heaps() -> None:
 
 
 def note_load() -> None:
-    """Note that a model, examples or a second database was loaded, which leaves tens of megabytes in the heap.
+    """Note that a model, examples or another database was loaded, which leaves tens of megabytes of freed memory.
 
-    If nothing else is loaded for `SETTLED` seconds, a thread returns them to the system. Between two loads, the process
-    would soon take the same memory again.
+    If nothing else is loaded for `SETTLED` seconds, a thread returns this memory to the system. Otherwise, the next
+    load can use it again.
     """
     timer = threading.Timer(SETTLED, give_back)
     timer.daemon = True  # the timer must not keep the process alive
@@ -51,6 +51,6 @@ def note_load() -> None:
 
 
 def give_back() -> None:
-    """Return freed memory from the C library to the system; if the library is not glibc, do nothing."""
+    """Return freed memory from the C library to the system. If the library is not glibc, do nothing."""
     with contextlib.suppress(AttributeError, OSError, TypeError):
         ctypes.CDLL(None).malloc_trim(0)

@@ -19,7 +19,7 @@ from typing import Any
 from .contractions import word_set
 
 FREQUENT = 5000
-"""The minimum count of a word in the subtitles (1.6 billion words) before it may replace an unknown word."""
+"""The minimum count, in subtitles of 1.6 billion words, of a word that replaces an unknown word."""
 COMMON = 15_000
 """A word that may be a name counts as an ordinary word if its count in lower case is at least this."""
 RARE = 50
@@ -46,7 +46,7 @@ _BRITISH = [
 ]
 """British and American spellings. British spelling is not a typing error."""
 _BRITISH_WORDS = word_set("maths programme programmes dreamt")
-"""Words of British English that are missing in both packages."""
+"""Words of British English that are missing from both packages."""
 _NO_NAMES = word_set(
     "grey armour tyre honorable mister independence reunion reconstruction que les del mon dem herr san"
 )
@@ -72,7 +72,7 @@ def load_lexicon() -> Lexicon | None:
 
 
 def loaded_lexicon() -> Lexicon | None:
-    """Return the shared lexicon if it is loaded."""
+    """Return the shared lexicon; None if it is not loaded."""
     return _loaded[0] if _loaded else None
 
 
@@ -101,7 +101,7 @@ class Lexicon:
         return word in self._counts or word in self._ordinary or word in self._names or word in _BRITISH_WORDS
 
     def rare(self, word: str) -> bool:
-        """Return whether `word`, in lower case, is missing in the dictionary and hardly occurs in the subtitles."""
+        """Return whether `word`, in lower case, is missing from the dictionary and hardly occurs in the subtitles."""
         return word not in self._ordinary and self.count(word) <= RARE
 
     def name(self, word: str) -> str:

@@ -5,10 +5,10 @@ from __future__ import annotations
 import threading
 
 LOADING = threading.RLock()
-"""A lock to hold during the import of a large library, and while a model loads, which may import parts of a library.
+"""A lock to hold while a large library is imported, or a model loads. Loading a model may import parts of a library.
 
-Two threads that import parts of one library at the same time may deadlock. The interpreter then gives one thread a
-module that is only half loaded. This happens with numpy, which spaCy, onnxruntime and others import.
+If two threads import parts of one library at the same time, they may wait for each other. To avoid the deadlock, the
+interpreter gives one thread a half-loaded module. This happens with numpy, which spaCy, onnxruntime and others import.
 """
 
 LONGEST = 5.0
@@ -19,7 +19,7 @@ _shown.set()
 
 
 def expect_prompt() -> None:
-    """Note that the console is about to show its prompt. If models loaded meanwhile, the prompt would take seconds longer."""
+    """Note that the console will soon show its prompt. If models loaded first, the prompt would come seconds later."""
     _shown.clear()
 
 
@@ -29,7 +29,7 @@ def note_prompt() -> None:
 
 
 def wait_for_prompt() -> bool:
-    """Wait until an expected prompt has appeared; return false if it has not after `LONGEST`.
+    """Wait until an expected prompt has appeared. After `LONGEST` seconds, stop waiting and return false.
 
     A background rule that loads a large library or model calls this first.
     """

@@ -1,8 +1,8 @@
 """A small classifier of sentences by meaning and spelling, with a class *none of these*.
 
 It is a kernel ridge regression over example sentences. The kernel is a sum of two similarities: a Gaussian of the
-distance in meaning (from an `Encoder`), and the cosine of the spelling (groups of three and four letters). Different
-shapes, such as *my* instead of *your*, lower both similarities.
+distance in meaning (from an `Encoder`), and the cosine of the spelling (groups of three and four letters). If the
+shapes of two sentences differ, for example *my* and *your*, both similarities are lower.
 """
 
 from __future__ import annotations
@@ -43,7 +43,7 @@ COMMON = 0.1
 RIDGE = 0.1
 """The ridge penalty: it limits the weight of a single example."""
 DOUBT = 0.2
-"""`confusions` lists an example if the other examples put it into a wrong class by at least this margin."""
+"""`confusions` lists an example if the other examples put it into a wrong class by more than this margin."""
 NONE = ""
 REMEMBERED = 256
 """The number of sentences whose classes a matcher keeps, because all skills ask for the same sentences."""
@@ -58,7 +58,7 @@ class Match:
     example: str
     """The example that resembles the sentence most."""
     margin: float
-    """The score of the class in the regression, minus the score of the next best class; about 1 for an example."""
+    """The class's score in the regression, minus the best score of any other class; about 1 for an example."""
     entities: tuple[Entity, ...] = ()
     """The named entities of the utterance, if the match comes from ``nlp``."""
     name: str = ""
@@ -124,7 +124,7 @@ class Matcher:
         Raises:
             PlatformError: The sentence model is missing (`ModelMissing`) or broken. The message says how to mend that.
         """
-        if self._learnt is not None:  # to check this, no lock is needed
+        if self._learnt is not None:  # this check needs no lock
             return
         with self._lock:
             if self._learnt is None:
@@ -147,7 +147,7 @@ class Matcher:
         return self._learnt.confusions
 
     def prepare(self, sentences: Sequence[str]) -> None:
-        """Encode sentences in one run, so that all matchers then find the vectors ready."""
+        """Encode sentences in one run, so that their vectors are ready when any matcher needs them."""
         if self._learnt is not None:
             self._encoder.encode([plain(sentence) for sentence in sentences])
 

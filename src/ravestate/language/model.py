@@ -20,7 +20,7 @@ if TYPE_CHECKING:
 TOKENS = 512
 """The maximum number of tokens that a model reads of a text, or of a pair of texts."""
 CHARACTERS = 10_000
-"""The maximum number of characters that the tokenizer reads; 512 tokens of running text have fewer."""
+"""The maximum number of characters that the tokenizer reads. 512 tokens of normal text have fewer characters."""
 BATCH_TOKENS = 256
 """The maximum number of tokens in a batch, padding included. Small batches need little memory."""
 
@@ -69,7 +69,7 @@ def folder_of(folder: Path | str | None, bundled: str) -> Path:
 
 
 class SentenceModel:
-    """A tokenizer with an ONNX session. Any thread may run it."""
+    """A tokenizer with an ONNX session. Thread-safe."""
 
     def __init__(self, folder: Path) -> None:
         """Load the model in `folder`.

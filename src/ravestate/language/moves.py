@@ -92,10 +92,10 @@ class Move:
 
 
 class Moves:
-    """The classifier. Thread-safe; before `load`, it returns no moves."""
+    """A classifier that maps an utterance to the next move. Thread-safe; before `load`, it returns no moves."""
 
     def __init__(self, examples: Mapping[str, Sequence[str]], encoder: Encoder | None = None) -> None:
-        """Take examples, in the format of ``moves.yaml``."""
+        """Take the examples, in the format of ``moves.yaml``; load nothing yet."""
         own = [(text, name, RIDGE) for name, texts in examples.items() if name != "like" for text in texts]
         others = {**bundled("acts").classes, **bundled("feelings").classes}
         for line in examples.get("like", ()):

@@ -32,9 +32,9 @@ class Near:
     score: float
     """The similarity: 1 for equal sentences; about 0.5 for sentences that have nothing in common."""
     place: int
-    """The place of the example in the list of examples."""
+    """The index of the example in the list of examples."""
     text: str
-    """The sentence."""
+    """The sentence that the example resembles."""
 
 
 class Nearest:
@@ -74,7 +74,7 @@ class Nearest:
         return self._learnt is not None
 
     def similarities(self, text: str, places: Sequence[int]) -> list[float]:
-        """Return the cosine similarity of a text to the examples at `places`. Before `load`, each similarity is 0.0."""
+        """Return a text's cosine similarity to each searched example at `places`. Before `load`, all are 0.0."""
         return [0.0] * len(places) if self._learnt is None else self._learnt.similarities(plain(text), places)
 
     def compared(self, sentences: Sequence[str], places: Sequence[int]) -> list[float]:

@@ -1,4 +1,4 @@
-"""Texts without words: a keyboard that was hit at random."""
+"""Recognise texts without words, from a keyboard that was hit at random."""
 
 from __future__ import annotations
 
@@ -12,7 +12,7 @@ _NO_VOWEL = re.compile(r"[^aeiouy]{4,}")
 
 
 def is_nonsense(text: str) -> bool:
-    """Return whether a text looks like a keyboard that was hit at random.
+    """Return whether a text looks as if the keyboard was hit at random.
 
     Example:
         >>> is_nonsense("asdfgh jkl"), is_nonsense("hello there")

@@ -1,6 +1,6 @@
 """The normal form of a text: typed English turned into correct written English, with offsets into the original.
 
-A well-written sentence stays as it is. The steps mend:
+A well-written sentence stays as it is. Other sentences are mended in three steps:
 
 1. words: write out the short forms in `WRITTEN`, drop letters repeated for emphasis, and mend typing errors and the
    capitals of names with the `Lexicon`;
@@ -31,10 +31,10 @@ class Normal:
     original: str
     """The text as typed."""
     origin: tuple[int, ...]
-    """For each character of `text`, and for its end, the position in `original`. It never decreases."""
+    """The position in `original` of each character of `text`, and of its end. The positions never decrease."""
 
     def span(self, start: int, end: int) -> tuple[int, int]:
-        """Return the span of `original` that became ``text[start:end]``; it is empty for an added mark."""
+        """Return the span of `original` that became ``text[start:end]``. An added mark has an empty span."""
         return self.origin[start], self.origin[end]
 
     def adds(self, start: int, end: int) -> bool:
@@ -103,7 +103,7 @@ _GOVERNING = _AUX | word_set(
 )
 """Words before a clause that belongs to the same sentence: *know* in *I know who you are*."""
 _SUPPOSING = word_set("think hope guess bet believe glad")
-"""Words after which *ur* means *you are* if one more word ends the sentence: *I think ur funny*."""
+"""Words after which *ur* means *you are* if just one more word follows in the sentence: *I think ur funny*."""
 _PLACED = word_set("called named from in")
 _NAMING = _PLACED | word_set("am i'm to")
 _PEOPLE = word_set(
@@ -117,7 +117,7 @@ _INTRODUCING = ("name is", "name's", "this is")
 _PARTS_OF_NAMES = word_set("new north south east west san santa los las saint el la puerto costa rio cape hong")
 """First words of place names: *New York*."""
 _AT = word_set("at by until till before after from since around about is and")
-"""Words after which a figure is a time or a number."""
+"""Words after which the figure 2 means a time or a number, not *to*."""
 _COUNTED = word_set("times days weeks months years hours minutes people")
 _FIRST = frozenset(entry.partition(" ")[0] for entry in WRITTEN if " " in entry)
 
@@ -126,7 +126,7 @@ _ANY_AUX = f"(?:{'|'.join(sorted(_AUX, reverse=True))})"
 _DONE = (
     "(?:sports|exercises|dishes|chores|things|drugs|tricks|crafts|puzzles|crosswords|sums|always|us|as|this|his|yes)"
 )
-"""Words after *do* that make it an order or a statement; before other plurals, it asks: *do dogs dream*."""
+"""Words after *do* in an order or a statement. Before other plurals, *do* begins a question: *do dogs dream*."""
 _ASKS = re.compile(
     rf"""(?:(?:i'm|i|fine|good)\ (?:.*\ )?)?and\ you$ | (?:what|how)\ about\b | (?:what|who|where|when|why|how)'s\b |
     (?:what|who|why|which|whose)\b(?!\ (?:{_ANY_SUBJECT}|an?)\b) |
@@ -141,7 +141,7 @@ _ASKS_ANEW = re.compile(
     re.VERBOSE,
 )
 _ASKS_YOU = re.compile(r"(?:do|are|can|did|would|will|have|could) you \S")
-"""The beginning of a question right after a statement; the statement must have a subject."""
+"""The beginning of a question right after a statement, if the statement has a subject."""
 
 LONGEST = 2000
 """The maximum number of characters that get a normal form; the rest of a text stays as typed."""
@@ -174,7 +174,7 @@ def normalise(text: str, names: Collection[str] = ()) -> Normal:
 
 
 class _Shared:
-    """A normal form that one thread computes. Other threads that ask for the same form wait for it."""
+    """A normal form that one thread computes, while other threads that ask for the same form wait."""
 
     def __init__(self, *given: Any) -> None:
         self._given = given
@@ -247,7 +247,7 @@ def _pieces(text: str, lexicon: Lexicon | None) -> list[_Piece]:
 
 
 def _crowded(before: str, mark: str, after: str, lexicon: Lexicon | None) -> bool:
-    """Return whether a space is missing between two words. A dot may also belong to a name: *example.org*."""
+    """Return whether a space is missing after the mark between two words. No space is missing in *example.org*."""
     if _NO_WORD.search(after) or (len(before) < 2 and not before.isdigit()):
         return False
     if mark == ".":
@@ -393,7 +393,7 @@ def _joined(pieces: Sequence[_Piece], original: str) -> Normal:
 
 
 def _aligned(written: str, typed: str, start: int) -> list[int]:
-    """Return each written character's origin: equal beginnings and ends match; letters between are spread evenly."""
+    """Return the origin of each written character. Equal beginnings and ends match; letters between spread evenly."""
     size, wide = len(typed), len(written)
     if size == wide:
         return list(range(start, start + size))

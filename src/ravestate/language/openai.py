@@ -252,7 +252,7 @@ class _Choice(BaseModel):
 
 
 class _Answer(BaseModel):
-    """A whole answer, or a piece of an answer. The last event of a stream may only count tokens."""
+    """A whole answer, or a piece of an answer. The last event of a stream may have no text, only a count of tokens."""
 
     choices: list[_Choice] | None = None
     error: Any = None
@@ -272,7 +272,7 @@ def make_client(base_url: str, key: str, timeout: Any) -> httpx2.AsyncClient:
 
 
 async def read(answer: httpx2.Response) -> bytes:
-    """Return the body of `answer`, cut after `LIMIT` bytes or a little more."""
+    """Return the body of `answer`. Stop reading after `LIMIT` bytes or a little more."""
     body = b""
     async for received in answer.aiter_bytes():
         body += received

@@ -18,8 +18,8 @@ BUNDLED = "reranker_en"
 class Reranker:
     """A cross-encoder: it scores how well a passage answers a question.
 
-    Making a reranker takes no time. Its first use loads the shared model, and raises the same errors as `Encoder`. Any
-    thread may use it.
+    Making a reranker takes no time. Its first use loads the shared model, and raises the same errors as `Encoder`.
+    Thread-safe.
 
     Example:
         ::
@@ -44,8 +44,8 @@ class Reranker:
     def score(self, query: str, passages: Sequence[str]) -> NDArray[np.float32]:
         """Return a score for each passage: shape (n,), float32, higher is better.
 
-        Scores are logits. Those of the bundled model go from about -11 (unrelated) to +11 (an answer). A pair of short
-        sentences takes about 3 ms. The model reads the first 512 tokens of a pair.
+        Scores are logits. The bundled model's scores go from about -11 (unrelated) to +11 (an answer). A pair of short
+        sentences takes about 3 ms. The model reads at most 512 tokens of a pair.
         """
         return self.score_pairs([(query, passage) for passage in passages])
 

@@ -14,17 +14,17 @@ BLOCK = 256
 
 
 class Rows:
-    """The vectors of n texts, each of length 1. Packed as small integers, they take a quarter of the memory.
+    """The vectors of n texts, each of length 1. As small integers, they take a quarter of the memory of floats.
 
     Example:
         ::
 
             rows = Encoder().encode_lasting(["What is your name?", "How are you?"])
-            rows.products(Encoder().encode(["How are you called?"]))      # the cosines, of shape (1, 2)
+            rows.products(Encoder().encode(["What are you called?"]))      # the cosines, of shape (1, 2)
     """
 
     def __init__(self, packed: NDArray[Any]) -> None:
-        """Take vectors of any length, as integers or floats of shape (n, d)."""
+        """Take vectors as integers or floats of shape (n, d). They may have any length; later, they are scaled to 1."""
         import numpy as np
 
         self._packed = packed
@@ -66,8 +66,8 @@ class Rows:
 def products(vectors: NDArray[np.float32], rows: NDArray[np.float32]) -> NDArray[np.float32]:
     """Return the products of vectors of shape (k, d) and rows of shape (n, d), as an array of shape (k, n).
 
-    This thread computes alone. The operator ``@`` shares the work with threads of numpy's library, which keep the cores
-    busy while they wait for each other. When other threads work too, ``@`` takes 20 times as long.
+    Only the calling thread computes. The operator ``@`` would share the work with threads of numpy's library, which
+    keep the cores busy while they wait for each other. When other threads work too, ``@`` takes 20 times as long.
     """
     import numpy as np
 

@@ -19,14 +19,14 @@ _HASH, _SHIFT = 2654435761, 21
 
 
 class Spelling:
-    """Examples as vectors of their letter groups; rare groups weigh more. Each bucket lists the examples in it."""
+    """Examples as vectors of their letter groups; rare groups weigh more. For each bucket, list the examples in it."""
 
     def __init__(self, examples: Sequence[str]) -> None:
         import numpy as np
 
         counts = _counts(examples)
         spread = (counts > 0).sum(axis=0)
-        # Groups of letters that are missing in all examples count 0.
+        # Groups of letters that no example has count 0.
         self._rarity = np.where(spread > 0, 1 + np.log(len(examples) / (1 + spread)), 0).astype(np.float32)
         vectors = self._vectors(counts)
         buckets, self._examples = np.nonzero(vectors.T)

@@ -23,11 +23,11 @@ def key_of(text: str) -> int:
 
 
 def built_in(texts: Sequence[str], size: int) -> tuple[NDArray[np.bool_], NDArray[np.int8]]:
-    """Return which of the texts have a ready-made vector (n of them), and these vectors: shape (n, d), of any length.
+    """Return which of the texts have a ready-made vector, and these n vectors: shape (n, d), of any length.
 
     Args:
         texts: Sentences in plain form.
-        size: The size of the model's file in bytes. For another model, no vectors are returned.
+        size: The size of the model's file in bytes. If the vectors were made for another size, return none.
     """
     import numpy as np
 

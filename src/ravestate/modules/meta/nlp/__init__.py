@@ -1,4 +1,4 @@
-"""The analysis of the user's words: words, names, triples, questions, yes and no."""
+"""Analyse the user's utterances: word forms, names, triples, questions, yes and no."""
 
 from __future__ import annotations
 

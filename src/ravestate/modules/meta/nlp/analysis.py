@@ -34,7 +34,7 @@ from .tree import Tree
 _SECOND_PERSON = word_set("you your yours yourself u ur")
 
 INTENTS = {"play": "intent_play", "greeting": "intent_hi", "farewell": "intent_bye"}
-"""Act of the user → the name of the signal of nlp for this act. Other acts have no signal."""
+"""Act of the user → the name of nlp's signal for this act. Other acts have no signal."""
 
 MATCHERS = ("acts", "feelings", "asks")
 """The names of the files of examples with which an analysis compares the user's sentences."""
@@ -59,7 +59,7 @@ ADVICE = frozenset(
 )
 """Classes of ``asks.yaml`` for questions that want advice or an opinion, not a fact."""
 ADVISED = 0.6
-"""The least confidence at which such a class counts."""
+"""The least confidence at which a class of ``asks.yaml`` shows that the user wants advice."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -83,7 +83,7 @@ class Analysis:
     contrasts: tuple[Contrast, ...] = ()
     """The contrasts, also in texts without a verb: *Leipzig, not Leeds*."""
     closing: Closing | None = None
-    """The question or request at the end, if the utterance has other sentences before it."""
+    """The question or request at the end of the utterance, if it can stand alone. See `Closing`."""
     acts: Mapping[str, Match] = field(default_factory=dict[str, Match])
     """Class in ``acts.yaml``, such as ``greeting`` → the best match of a sentence for this act."""
     feelings: Mapping[str, Match] = field(default_factory=dict[str, Match])
@@ -107,7 +107,7 @@ class Analysis:
 
     @property
     def introduction(self) -> Introduction | None:
-        """The user's name with the other words, if the user says their name beside something else."""
+        """The user's name and the other words, if the user says both: *I'm Ada, and I have had a long day*."""
         persons = [one.text for one in self.entities if one.label == "PERSON"]
         return next(filter(None, (one.named(persons) for one in introductions_in(self.tree))), None)
 

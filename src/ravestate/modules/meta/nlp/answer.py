@@ -44,7 +44,7 @@ _PART = re.compile(r"([^.,;:!?…\n]*)([.,;:!?…\n]*)")
 _STRETCHED = re.compile(r"([a-z])\1{2,}")
 _TURN = re.compile(r"\b(?:but|although|though|however)\b")
 _HEDGE = re.compile(r"\b(?:probably|prob|maybe|perhaps|possibly|i guess|i suppose)\b(?! (?!yes|no|so|not)\w)")
-"""A hedge before an answer or at the end of a part. *maybe he is at home* does not count: it hedges a statement."""
+"""A hedge before an answer or at the end of a part. In *maybe he is at home*, it does not count: no answer follows."""
 _FILLERS = word_set("well oh ah uh um er hm hmm mm honestly actually so and then please sorry frankly ha haha")
 _COURTESIES = ("thanks", "thank you", "many thanks")
 """Parts before an answer: *thank you, but no*."""
@@ -69,7 +69,7 @@ _SHORT = re.compile(
 )
 """A short answer: *I do*, *she certainly is not*, *my sister does*."""
 _SOMEBODY = word_set("my our his her their the he she they some most others everyone everybody")
-"""The first word after *but* if the answer is about somebody else: *no, but my cousin does*."""
+"""First words of an answer after *but* that is about other people: *no, but my cousin does*."""
 _LEAD = 2
 """The maximum number of words before a comma that introduce an answer: *I mean, sure*."""
 _LONGEST = 400
@@ -98,7 +98,7 @@ def yesno_of(text: str) -> YesNo:
 
 
 def _score(text: str) -> int | None:
-    """Return the score of a text's first sentence. Sentences of fillers alone do not count."""
+    """Return the score of a text's first sentence. Skip sentences that consist of fillers."""
     found: int | None = None
     opened = hedged = False
     for part, marks in _parts(text):
@@ -139,8 +139,8 @@ def _parts(text: str) -> Iterator[tuple[str, str]]:
 def _score_of_part(part: str, asks: bool) -> int | None:
     """Return the score of a part.
 
-    A part with a question mark counts only if its example has the same word order. A sure *yes* or *no* counts only if
-    this is the word order of a question.
+    A part with a question mark counts only if the example that it resembles has the same word order. A sure *yes* or
+    *no* counts only if this is the word order of a question.
     """
     match = bundled_matcher("answers").match(part)
     score = _SCORES[match.name] if match is not None else None
@@ -161,6 +161,6 @@ def _explicit(part: str) -> int | None:
 
 
 def _score_of_sentence(text: str) -> int | None:
-    """Return the score of a text's first sentence as a whole, when its parts have no score or contradict each other."""
+    """Return the score of a text's first sentence as a whole: its parts have no score, or contradict each other."""
     match = next(iter(bundled_matcher("answers").match_all(sentences(text)[:1])), None)
     return None if match is None else _SCORES[match.name]

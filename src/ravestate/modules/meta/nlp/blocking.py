@@ -1,4 +1,4 @@
-"""Import a package without the parts and the optional packages that it would import."""
+"""Import a package without some of its parts, and without optional packages that it would import."""
 
 from __future__ import annotations
 
@@ -28,7 +28,7 @@ class _BlockingFinder(MetaPathFinder):
 
 @contextmanager
 def blocked(*names: str) -> Generator[None]:
-    """Prevent this thread from importing the packages `names` for the first time. Other threads still can import them.
+    """Raise an error if this thread imports one of the packages `names` for the first time. Other threads may.
 
     Example:
         >>> with blocked("this"):
@@ -46,14 +46,14 @@ def blocked(*names: str) -> Generator[None]:
 
 @contextmanager
 def postponed(module: str, function: str) -> Generator[None]:
-    """During an import, let `function` of `module` stand for itself. Its first call imports the module.
+    """Replace `module` and its package by stubs during an import, so that they are not imported yet.
 
-    The package that has `module` is postponed as well, and everything that it imports. If the module is imported already,
-    do nothing.
+    The stub of the module has only `function`. A call of this function imports the real module. If the package is
+    imported already, do nothing.
 
     Args:
-        module: The module's full name. Its package is imported by nothing else.
-        function: The name of the only thing that is imported from it.
+        module: The module's full name.
+        function: The only function of the module that the import needs.
     """
     package = module.rpartition(".")[0]
     if package in sys.modules:

@@ -57,7 +57,7 @@ class _Unknown:
 
 
 class Clause:
-    """One clause of a tree. `all_in` makes all clauses of a tree."""
+    """One clause of a tree. Use `all_in` to make the clauses of a tree."""
 
     def __init__(self, tree: Tree, verb: Word, clauses: dict[int, Clause]) -> None:
         self.tree = tree
@@ -82,7 +82,7 @@ class Clause:
         return list(dict.fromkeys(clauses.values()))
 
     def readings(self) -> Iterator[tuple[Triple, Part, Part]]:
-        """Yield a triple for each pair of subject and object, with its phrases."""
+        """Yield a triple for each pair of subject and object, with the phrases of both."""
         subjects, objects = self._parts() if not self._is_lets else ([], [])
         for subject in subjects:
             for object, contrasted in objects or [(NOTHING, False)]:
@@ -123,7 +123,7 @@ class Clause:
 
     @cached_property
     def _is_state(self) -> bool:
-        """Whether the verb is an adjective or a name of the subject: *she very nice*, *I am interested*."""
+        """Whether the predicate describes the subject: *she very nice*, *I am interested*, *my hobby is reading*."""
         feels = self.passive is not None and self.chain[0].low in FEELINGS
         return feels or self._names_pursuit or lacks_copula(self.tree, self.verb)
 
@@ -278,7 +278,7 @@ class Clause:
 
     @cached_property
     def subjects(self) -> list[Part]:
-        """The subjects of the clause. If it has none, these are the subjects of the head clause."""
+        """The subjects of the clause. If it has none: the subjects of its head clause, or the unsaid subject."""
         own, head, verb = self.own_subjects, self.head_clause, self.verb
         above = self.tree.head(verb)
         if own and own[0].low in _RELATIVE and self._is_relative and len(own) == 1:
@@ -298,7 +298,7 @@ class Clause:
         return head.subjects
 
     def _unsaid(self) -> list[Part]:
-        """Return the subject that goes without saying: *you* in a request, *I* in a note such as *am tired*."""
+        """Return the unsaid subject: *you* in a request, *I* in a note such as *am tired*."""
         auxiliaries = [word.low for word in self.tree.children(self.verb, "aux", "auxpass")]
         if any("?" in word.low for word in self.own):  # as in "like it?"
             return [YOU]
@@ -318,7 +318,7 @@ class Clause:
         return [phrase_of(self.tree, noun)]
 
     def _objects(self) -> list[tuple[Part, bool]]:
-        """Return the objects of the first kind that the clause has."""
+        """Return the objects: the first kind, in the README's order, that the clause has. Flags: see `_parts`."""
         tree, verbs = self.tree, self.verbs
         if lacks_copula(tree, self.verb):
             return self._written([self.verb], self.verb)
@@ -366,7 +366,7 @@ class Clause:
 
     @cached_property
     def _beside(self) -> list[Word]:
-        """The predicate that the parser takes for a part of the subject: *is Berlin the capital*, *are cats nice*."""
+        """The predicate, if the parser attaches it to the subject by mistake: *is Rome a city*, *are cats nice*."""
         subjects = self.own_subjects if self._is_copula and self.unknown is None else []
         beside = self.tree.children_of(subjects, "appos", "amod", "npadvmod")
         asked = bool(subjects) and subjects[0].index > self.verb.index
@@ -393,10 +393,8 @@ class Clause:
         heads = [head, *self.tree.children(head, "advmod")]  # as in "next to the station"
         phrases = [word for word in self.tree.children_of(heads, "prep", "dative") if of or word.low != "of"]
         for phrase in sorted(phrases, key=lambda word: (word.index < head.index, word.index)):
-            # As in "out of", and in "in Berlin and in Paris".
-            more = (
-                ("conj",) if self.tree.children(phrase, "pobj") else ("prep", "conj")
-            )  # "from Monday to Friday" has one
+            # Follow both prepositions of "out of" and "in Rome and in Bern", but only the first of "from May to July".
+            more = ("conj",) if self.tree.children(phrase, "pobj") else ("prep", "conj")
             prepositions = [phrase, *self.tree.children(phrase, *more)]
             nouns = [noun for noun in self.tree.children_of(prepositions, "pobj", "pcomp") if noun.low != "of"]
             asked = self.unknown is not None and any(self.unknown.word in self.tree.subtree(noun) for noun in nouns)
@@ -427,7 +425,7 @@ class Clause:
     # --------------------------------------------------------------------------------------- writing
 
     def _written(self, heads: Iterable[Word], verb: Word | None = None) -> list[tuple[Part, bool]]:
-        """Return the phrases of `heads` and their conjuncts. A phrase's flag says whether a *not* denies it alone."""
+        """Return the phrases of `heads` and their conjuncts, each with a flag: whether a *not* denies it alone."""
         found: list[tuple[Part, bool]] = []
         for head in heads:
             for word in conjuncts(self.tree, head, self._clauses):

@@ -17,7 +17,7 @@ SHORTEST = 3
 LONGEST = 5
 """The maximum number of words of a remark."""
 MOST = 8
-"""The maximum number of sentences of an utterance whose last question counts more than the rest."""
+"""The maximum number of sentences of an utterance. In a longer one, the last question counts no more than the rest."""
 LONG = 10
 """The maximum number of words of a statement that the user turns into a question with *and you?*."""
 
@@ -30,7 +30,7 @@ _RETURNED = re.compile(
     r"(?: too)?[?.! ]*$",
     re.IGNORECASE,
 )
-"""Words that return a statement as a question: *and you?*."""
+"""Words that turn the user's statement into a question to the agent: *and you?*."""
 _HELPERS = {
     "am": "Are",
     "'m": "Are",
@@ -50,7 +50,7 @@ _JUDGING = word_set("think say reckon mean")
 _FIRST = word_set("i me my mine we us our")
 _WILLING = word_set("can could will would")
 _SHOWING = word_set("tell sing give show explain say recite recommend suggest play")
-"""Verbs of requests for words of the agent."""
+"""Verbs of requests that the agent fulfils by speaking."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -59,26 +59,26 @@ class Closing:
 
     text: str
     asides: tuple[str, ...]
-    """The sentences before it."""
+    """The sentences before the question or request."""
     remarks: bool
-    """Whether the sentences before it only react to the agent: *haha, funny!*. *My cat is ill* tells something."""
+    """Whether all asides only react to the agent, such as *haha, funny!*. *My cat is ill* tells something new."""
 
     returned: bool = False
-    """Whether the text puts *and you?* in full."""
+    """Whether `text` is the full question that the user shortened to *and you?*."""
 
     def outweighs(self, text: str) -> bool:
-        """Return whether `text` stands only before the question. The agent answers the question then."""
+        """Return whether `text` is only in the asides. If so, the agent should answer the closing question instead."""
         return text not in self.text and any(text in aside for aside in self.asides)
 
 
 def closing_of(tree: Tree, sentences: Sequence[str]) -> Closing | None:
-    """Return the question or request that ends an utterance of several sentences; None if it has none."""
+    """Return the question or request that ends an utterance, if it can stand alone; otherwise None."""
     if (returned := _returned(tree)) is not None:
         return returned
     if not 1 < len(sentences) <= MOST:
         return None
     *asides, last = sentences
-    text = tree.text.lower()  # the sentences have capitals, the tree has the user's
+    text = tree.text.lower()  # the capitals of the sentences may differ from those in the tree
     places = [0]
     for one in sentences:
         places.append(text.find(one.lower().rstrip(".?!"), places[-1]))
@@ -127,7 +127,7 @@ def _returned(tree: Tree) -> Closing | None:
 
 
 def _requests(words: Sequence[Word]) -> bool:
-    """Return whether a sentence asks for words of the agent: *tell me a joke*, *can you sing something*."""
+    """Return whether a sentence asks the agent to say or do something: *tell me a joke*, *can you sing something*."""
     low = [word.low for word in words]
     return low[0] in _SHOWING or (low[0] in _WILLING and low[1] == "you") or (low[0] == "please" and low[1] in _SHOWING)
 

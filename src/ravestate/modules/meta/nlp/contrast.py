@@ -26,14 +26,14 @@ _ASIDE = word_set(
     "today tonight tomorrow yesterday now day week month year time weekend night morning evening moment "
     "chance problem bit clue word idea lot all any anymore more one thing way"
 )
-"""Heads of phrases that *not* may open without a contrast: *I live in Rome, not all the time*, *not a chance*."""
+"""Heads of phrases before which *not* makes no contrast: *I live in Rome, not all the time*, *not a chance*."""
 _EXCEPTED = word_set("anything anyone anybody anywhere nothing nobody none everything everybody everyone all")
 """Words after which *but* means *except*: *I don't eat anything but rice*."""
 
 
 @dataclass(frozen=True, slots=True)
 class Contrast:
-    """The asserted and the denied phrase of a contrast: *Leipzig* and *Leeds*, in *it's Leipzig, not Leeds*."""
+    """The asserted phrase (`right`) and the denied phrase (`wrong`): *Bern* and *Bonn*, in *it's Bern, not Bonn*."""
 
     right: Phrase
     wrong: Phrase
@@ -59,7 +59,7 @@ def is_denied(tree: Tree, word: Word) -> bool:
 
 
 def contrasted_with(tree: Tree, word: Word) -> bool:
-    """Return whether, in a repaired tree, a contrast asserts this noun, and denies another in its place."""
+    """Return whether, in a repaired tree, a contrast asserts this noun and denies another noun in its place."""
     tops = (word, tree.head(word)) if word.dep == "pobj" else (word,)
     return any(is_denied(tree, other) for other in tree.children_of(tops, "conj"))
 
@@ -77,7 +77,7 @@ def join_contrasts(tree: Tree) -> list[Word]:
 
 
 def _before_not(tree: Tree, negation: Word) -> tuple[Word, Word, Word, Sequence[Word]] | None:
-    """Return the parts of *Leipzig not Leeds*: the tops of both phrases, the negation, and the words of the denied phrase."""
+    """Return the parts of *Bern not Bonn*: the heads of both phrases, the negation, the words of the denied phrase."""
     span = _span(tree, negation.index + 1)
     last = _back(tree, negation.index - 1)
     if last is None or not span:
@@ -100,7 +100,7 @@ def _before_not(tree: Tree, negation: Word) -> tuple[Word, Word, Word, Sequence[
 
 
 def _after_not(tree: Tree, but: Word) -> tuple[Word, Word, Word, Sequence[Word]] | None:
-    """Return the parts of *not Leeds but Leipzig* and of *not Leeds, Leipzig*, as `_before_not` does."""
+    """Return the parts of *not Bonn but Bern* and of *not Bonn, Bern*, as `_before_not` does."""
     span, last = _span(tree, but.index + 1), _back(tree, but.index - 1)
     right = _top(tree, span) if span else None
     if last is None or right is None:
@@ -128,7 +128,10 @@ def _after_not(tree: Tree, but: Word) -> tuple[Word, Word, Word, Sequence[Word]]
 
 
 def _fragment(tree: Tree) -> list[Word] | None:
-    """Return the words of *Leipzig, not Leeds* or *not Leeds, Leipzig*, a text without a verb, which has no reliable tags."""
+    """Join the contrast in a text without a verb (*Leipzig, not Leeds*); return None for other texts.
+
+    The tags in such a text are unreliable, so the punctuation, *but* and *not* separate the two sides.
+    """
     parts = [word for word in tree.words if not _begins(tree.words[: word.index + 1])]
     while parts and parts[-1].pos == "PUNCT":
         parts.pop()
@@ -185,7 +188,7 @@ def _is_tree(words: Sequence[Word]) -> bool:
 
 
 def _span(tree: Tree, start: int) -> list[Word]:
-    """Return the words of the phrase that begins at `start`. One word in place of a noun counts, although it seems a verb."""
+    """Return the words of the phrase that begins at `start`. A single word counts even if it is tagged as a verb."""
     found: list[Word] = []
     for word in tree.words[start:]:
         if word.pos not in _INNER and not (word.pos == "ADP" and (not found or word.low == "of")):
@@ -252,7 +255,7 @@ def _begins(before: Sequence[Word]) -> bool:
 
 
 def _is_vague(word: Word) -> bool:
-    """Return whether a pronoun is no side of a contrast: *i not understand*, *she did it, not me*."""
+    """Return whether a word is a pronoun that is no side of a contrast: *i not understand*, *she did it, not me*."""
     return word.pos == "PRON" and (word.dep in SUBJECTS or word.low in ("it", "that", "this"))
 
 

@@ -20,9 +20,9 @@ _OPENERS = word_set(
 """Words without meaning before a question."""
 _TELLING = word_set("tell say explain show remind describe ask inform clarify specify confirm mention point")
 _KNOWING = word_set("know remember guess wonder see find hear understand recall")
-"""Verbs before an indirect question. Verbs of telling are not listed: a person follows them, as in *tell me where*."""
+"""Verbs of knowing before an indirect question: *do you know where*."""
 _MINDING = word_set("remember recall understand see hear")
-"""Verbs that make no question if they are a request: *remember who you are*."""
+"""Verbs whose requests ask nothing: *remember who you are*."""
 _SETTLING = word_set("decide check figure work realise realize notice imagine discover determine")
 """Verbs before an indirect question, if the clause asks by itself: *have you decided where*, but not *I decided where*."""
 _THEM = word_set("him her them")
@@ -31,7 +31,7 @@ _HINTS = word_set("idea clue reason sure")
 _PERFORMED = word_set("joke story tale poem riddle secret lie fairytale anecdote goodnight that again to not")
 """Words for things to perform, such as jokes. A request for a performance is not a question."""
 _ANY = word_set("any ever anyone anybody anything")
-"""Words of questions that may leave out their verb: *any plans for today*, *ever been to Paris*."""
+"""First words of questions that leave out their verb: *any plans for today*, *ever been to Paris*."""
 _ANYBODY = word_set("anyone anybody someone somebody any")
 """The subjects of questions and requests that leave out their auxiliary: *anyone know who*, *somebody tell me how*."""
 _NO_PREDICATE = word_set("too either neither again first next")
@@ -165,7 +165,7 @@ def _parts(words: Sequence[Word]) -> list[list[Word]]:
 
 
 def _stands_apart(parts: Sequence[Sequence[Word]], part: Sequence[Word], tree: Tree) -> bool:
-    """Return whether a part is no relative clause, because a colon or a single word precedes it: *Mum, who made the moon*."""
+    """Return whether a colon or a single word precedes a part. If so, it is no relative clause: *Mum, who made it*."""
     before = tree.before(part[0])
     return before is not None and (before.low == ":" or (before.low == "," and parts.index(part) == len(parts[0]) == 1))
 
@@ -177,10 +177,10 @@ def _opens_question(
 
     Args:
         part: The words.
-        clauses: The clauses in them.
+        clauses: The clauses of these words.
         asked: Whether a question mark follows.
         exclaims: Whether an exclamation mark follows.
-        apart: Whether the words before do not belong to the same clause.
+        apart: Whether the words before the part belong to another clause.
     """
     first, second = part[0], part[1].low if len(part) > 1 else ""
     if first.low == "which" and second in AUXILIARIES and part[2:] and part[2].low in QUESTION_WORDS:

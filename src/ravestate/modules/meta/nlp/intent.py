@@ -25,7 +25,7 @@ Intents = Mapping[str, tuple[str, ...]]
 """Qualified name of an intent's signal → the intent's examples."""
 
 OF_ACT = 12
-"""This many examples of each act of the user, such as *greeting*, compete with the designer's intents."""
+"""About this many examples of each act of the user, such as *greeting*, compete with the designer's intents."""
 
 _RULE = "learn_intents"
 
@@ -33,8 +33,8 @@ _RULE = "learn_intents"
 def intent(module: rs.Module, name: str, *, examples: Sequence[str] | str | Path) -> rs.Signal[Match]:
     """Declare a signal for utterances that resemble `examples`; its payload is the `Match`.
 
-    All intents of a context compete with one another and with the user's acts (``acts.yaml``). They also compete with
-    everyday sentences that are neither. Only the signal of the best match is raised. Two or three examples are enough for a start.
+    All intents of a context compete with one another, with the user's acts (``acts.yaml``), and with everyday
+    sentences. Each sentence raises only the signal of its best match. Two or three examples are enough for a start.
 
     Args:
         module: The module of the signal, which must require ``nlp``.
@@ -92,8 +92,8 @@ def intents_of(policy: Policy) -> dict[str, tuple[str, ...]]:
 def doubtful_examples(intents: Intents) -> Iterator[tuple[str, str, str]]:
     """Yield each example of an intent that equals or resembles an example of another intent.
 
-    An item has the example, the name of its intent, and the name of the other intent. Without the sentence model, yield
-    only examples that are the same word for word.
+    Each item is a tuple: the example, the name of its intent, and the name of the other intent. Without the sentence
+    model, yield only examples that are the same word for word.
     """
     owners: dict[str, str] = {}
     for name, texts in intents.items():
@@ -151,7 +151,7 @@ def _declared(module: rs.Module) -> dict[str, tuple[str, ...]]:
 
     declared: dict[str, tuple[str, ...]] = {}
     cast("Any", publish).declared = declared
-    # The rules of all modules write the same slot. Without detachment, they would exclude each other (L10).
+    # The rules of all modules write the same slot. Without detachment, they would exclude each other (law L10).
     module.rule(when=rs.startup.detached(), writes=names.intents, detached=True, background=True, name=_RULE)(publish)
     return declared
 

@@ -10,7 +10,7 @@ from .tree import Tree
 from .verbs import VERBAL
 
 SHORTEST = 3
-"""The minimum number of words that say more than the name."""
+"""The minimum number of other words in an utterance that says more than the user's name."""
 
 _CLAUSE = re.compile(
     r"[.!?;:,…–—()\n]+\s*|\s(?:and|but|so|by the way|btw)\s(?=(?:i|my|we|our|it|this|that|the|he|she|they|there)\b)",
@@ -43,22 +43,22 @@ _POLITE = re.compile(
 
 @dataclass(frozen=True, slots=True)
 class Introduction:
-    """Words in the place of the user's name: *Ilka*, and perhaps also *tired*, in *I'm tired*."""
+    """Words in the place of the user's name: *Ilka* in *I'm Ilka*, but also *tired* in *I'm tired*."""
 
     name: str
     rest: str
     """The other words of the utterance, without polite words."""
     sure: bool = False
-    """Whether the words around the name can only introduce it: *my name is*, *call me*."""
+    """Whether the words around the name can only introduce a name: *my name is*, *call me*."""
     pointing: bool = False
-    """Whether the words may point at something else: *it's Ilka*, *this is Ilka*."""
+    """Whether the words may also be about another person or thing: *it's Ilka*, *this is Ilka*."""
     late: bool = False
-    """Whether a clause with a verb stands before it: *my dog isn't Rex, it's Max*."""
+    """Whether a verb stands before the introduction: *my dog isn't Rex, it's Max*."""
 
     def named(self, persons: Collection[str]) -> Introduction | None:
-        """Return the introduction with its name in capitals, if the utterance also says more; None if it does not.
+        """Return the introduction, with a capital for the name; None if the utterance says nothing but the name.
 
-        Unless the words are sure, the name must be among `persons`.
+        Unless the introduction is `sure`, the name must be among `persons`.
         """
         known = self.sure or self.name.lower() in map(str.lower, persons)
         if not known or " " in self.name or len(re.findall(r"\w+", self.rest)) < SHORTEST:

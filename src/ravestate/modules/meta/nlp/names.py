@@ -27,8 +27,8 @@ class Settings(rs.Settings):
     agent_names: tuple[str, ...] = ("Ravestate",)
     """The agent's names; by default, ``interloc.agent``. A text with one of these names is about the agent."""
     model: str = ""
-    """The name of a language model that helps to read the user's words; by default, none does. Its server must support
-    OpenAI's protocol with JSON schemas."""
+    """The name of a language model that helps to read the user's words; by default, there is none. The model's server
+    must support OpenAI's protocol with JSON schemas."""
     base_url: str = "http://localhost:11434/v1"
     """The address of the model's server; by default, Ollama on this machine."""
     api_key: SecretStr | None = None
@@ -38,7 +38,7 @@ class Settings(rs.Settings):
 
 
 class ContextLock(asyncio.Lock):
-    """A first-in, first-out lock that each context copies for itself."""
+    """A first-in, first-out lock. Each context gets a lock of its own."""
 
     def __deepcopy__(self, memo: object) -> ContextLock:
         return ContextLock()
@@ -50,7 +50,7 @@ class ContextLock(asyncio.Lock):
 module = rs.Module("nlp", requires=[rawio, interloc], settings=Settings)
 
 reader: rs.Slot[ModelReader | None] = module.slot("reader", None, input=True)
-"""The language model that helps; None if the settings name no model. You may write a reader with a model of your own."""
+"""The reader with a language model; None if the settings name no model. A rule can write a reader of its own."""
 
 text: rs.Slot[str] = module.slot("text", "", always=True)
 """The last analysed utterance. Rules that need both the text and its analysis wait for this slot, not for

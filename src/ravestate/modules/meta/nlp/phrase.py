@@ -85,7 +85,7 @@ def person_of(word: Word) -> Person:
 
 
 def noun_phrase(tree: Tree, head: Word, *, joined: bool = False) -> list[Word]:
-    """Return the words of the noun phrase around `head`, with its conjuncts if it is `joined`.
+    """Return the words of the noun phrase around `head`; if `joined`, with its conjuncts.
 
     The phrase keeps possessives, adjectives, numbers, compounds and *of*. It drops determiners, adverbs, other
     prepositions and relative clauses. A gerund (*playing chess*) keeps everything except determiners.
@@ -123,7 +123,7 @@ def gerund_phrase(tree: Tree, head: Word) -> list[Word]:
 
 
 def conjuncts(tree: Tree, head: Word, clauses: Container[int]) -> list[Word]:
-    """Return `head` with its conjuncts, without the verbs in `clauses` (indices)."""
+    """Return `head` with its conjuncts. Leave out verbs whose indices are in `clauses`."""
     found = [head]
     for word in found:  # the list grows in the loop
         # As in "a cat, a dog and a bird".
@@ -134,7 +134,7 @@ def conjuncts(tree: Tree, head: Word, clauses: Container[int]) -> list[Word]:
 
 
 def _belongs(tree: Tree, child: Word, head: Word) -> bool:
-    """Return whether a word with its own dependents is a part of the phrase around `head`."""
+    """Return whether `child`, with its own dependents, belongs to the phrase around `head`."""
     if child.dep == "appos":  # a name without a comma, perhaps in lower case, as in "my friend tom"
         comma = any(between.pos == "PUNCT" for between in tree.words[head.index : child.index])
         return not comma and (child.pos == "PROPN" or (child.tag == "NN" and child.index == head.index + 1))

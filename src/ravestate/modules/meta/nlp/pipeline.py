@@ -29,7 +29,7 @@ LONGEST = 2000
 """The maximum number of characters that are analysed, because long texts take long."""
 
 TOGETHER = 8
-"""The size of a batch of waiting texts; a batch halves the time for each text."""
+"""The maximum number of waiting texts in one batch. Batches halve the time per text."""
 
 _INSTALL = "pip install 'ravestate[nlp]'"
 
@@ -69,7 +69,7 @@ class Pipeline:
         """Load the pipeline, unless it is loaded already. Loading takes about a second.
 
         Raises:
-            PlatformError: spaCy or the pipeline is missing, or it cannot be loaded.
+            PlatformError: spaCy or the pipeline is missing, or the pipeline cannot be loaded.
         """
         if self._nlp is not None:  # a loaded pipeline needs no lock
             return
@@ -141,7 +141,7 @@ class Pipeline:
     def _load(self) -> Any:
         try:
             # The small pipelines need none of these packages, which would cost a second and 190 MB. A pipeline that
-            # the user names may need them. The commands of spaCy (`spacy.cli`) import 360 modules more.
+            # the user names may need them. The commands of spaCy (`spacy.cli`) import 360 more modules.
             with (
                 blocked(*(() if self.name else ("torch", "tensorflow", "mxnet", "cupy"))),
                 postponed("spacy.cli.info", "info"),
@@ -188,7 +188,7 @@ def _found(normal: Normal, doc: Any) -> tuple[Tree, tuple[Entity, ...]]:
 
 
 def _with_names(words: list[Word]) -> list[Word]:
-    """Tag nouns as names: with a capital inside a sentence, unless most words have one; at its start, if no word is so written."""
+    """Tag nouns as names: with a capital inside a sentence, unless most words have one; at the start, by `_is_name`."""
     capital = [word.text[:1].isupper() and word.text[1:].islower() for word in words]
     inside = 2 * sum(capital) <= len(words)
     starts = {0, *(word.index + 1 for word in words if word.pos == "PUNCT")}

@@ -67,7 +67,7 @@ _CLASS_OF = {noun: kind for kind, nouns in _CLASSES.items() for noun in nouns}
 _FOUGHT_FOR = word_set(
     "look wait ask search pay care stand work hope vote apply prepare fight study go know famous long plan shop hunt"
 )
-"""Verbs that make *what ... for* ask for a thing."""
+"""Words with which *what ... for* asks for a thing, not for a reason: *what are you looking for*."""
 
 
 def kind_at(words: Sequence[Word], index: int) -> QuestionWord | None:

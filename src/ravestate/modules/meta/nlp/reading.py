@@ -1,7 +1,7 @@
 """The reading of an utterance by a language model, which may replace parts of the module's own analysis.
 
-The server must constrain the model's answer to a JSON schema. So the answer is always a `Reading`. A model may still
-answer the user, or leave words out. `Reading.normal` detects that, and such a reading is not used.
+The server must constrain the model's answer to a JSON schema. So the answer is always a `Reading`. The model may still
+answer the user's question, or leave words out. `Reading.normal` detects such a reading, and it is not used.
 """
 
 from __future__ import annotations
@@ -105,7 +105,7 @@ SCHEMA: dict[str, Any] = {
 
 
 class ModelReader:
-    """Reads utterances with a language model, and never keeps an answer waiting for long.
+    """A reader of utterances with a language model. It never delays an answer for long.
 
     After a failure, the next utterance is analysed without the model. Each further failure in a row doubles the number of
     such utterances, up to `MOST_SKIPPED`. The reader belongs to one event loop.
@@ -116,13 +116,13 @@ class ModelReader:
 
         Args:
             backend: The language model.
-            timeout: Seconds after which the analysis does not wait for the model any longer.
+            timeout: The number of seconds that the analysis waits for the model.
         """
         self._backend, self._timeout = backend, timeout
         self._failures = self._skipped = 0
 
     async def read(self, text: str) -> Reading | None:
-        """Return the model's reading; None if the text is too long, or the model is skipped after failures.
+        """Return the model's reading; None if the text is empty or too long, or the model is skipped after failures.
 
         Raises:
             PlatformError: The model failed, took too long, or answered something other than a reading.
@@ -137,7 +137,7 @@ class ModelReader:
             self._fail()
             raise PlatformError(
                 f"nlp: the language model took more than {self._timeout:g} s: take a smaller model, or give it longer "
-                f"with nlp.model_timeout={2 * self._timeout:g}. Until then, nlp works without it"
+                f"with nlp.model_timeout={2 * self._timeout:g}. Meanwhile, nlp works without the model"
             ) from None
         except PlatformError:
             self._fail()

@@ -1,4 +1,4 @@
-"""Repair common mistakes of the small pipelines in dependency trees: question tags, and nouns that must be verbs."""
+"""Repair common mistakes of the small pipelines in dependency trees, such as nouns that must be verbs."""
 
 from __future__ import annotations
 
@@ -15,7 +15,7 @@ _NEGATIONS = ("n't", "not", "nt")
 _BE = ("is", "are", "was", "were")
 _CLOSING = ("NOUN", "PROPN", "ADJ", "ADV", "VERB", "NUM", "PRON")
 _ACTIONS = (("do", "it"), ("have", "it"), ("do", "that"), ("have", "that"), ("do", "this"), ("have", "this"))
-"""An auxiliary and a pronoun that make no question tag: *I can't let you do it*."""
+"""Pairs of an auxiliary and a pronoun that are no question tag: *I can't let you do it*."""
 _THINGS = word_set("it that this me him her them us one")
 """Pronouns before a question tag without a comma: *you like it don't you*."""
 _OBJECTIVE = word_set("me him us them")
@@ -25,7 +25,7 @@ _INVERTING = word_set("do does did can could will would should")
 
 
 def repaired(tree: Tree) -> Tree:
-    """Return a tree of the same words, and replace relations that cannot be right."""
+    """Return a tree of the same words, with tags and relations corrected where they cannot be right."""
     words = list(tree.words)
     for word in tree.words:
         if word.low in AUXILIARIES:
@@ -99,7 +99,7 @@ def _make_verb(tree: Tree, words: list[Word], auxiliary: Word) -> None:
 
 
 def _make_passive(tree: Tree, words: list[Word], be: Word) -> None:
-    """Turn a participle after its noun into the verb: *eaten*, in *was the cake eaten by the dog*; *is the baby crying*."""
+    """Turn a participle after its noun into the verb: *eaten* in *was it eaten by ants*, *crying* in *is he crying*."""
     nouns = [word for word in tree.children(be, "nsubj", "attr") if word.index > be.index]
     for participle in tree.children_of(nouns, "acl"):
         if be.low in _BE and be.dep == "ROOT" and tree.children(participle, "agent"):
@@ -123,7 +123,7 @@ def _make_copula(tree: Tree, words: list[Word], short: Word) -> None:
 
 
 def _make_present(tree: Tree, words: list[Word], noun: Word) -> None:
-    """Turn a plural that ends a clause without a verb into the verb: *snores*, in *my husband snores*."""
+    """Turn a plural noun at the end of a clause without a verb into a verb: *snores*, in *my husband snores*."""
     before = tree.before(noun)
     clausal = noun.dep == "ROOT" or (noun.dep in ("ccomp", "advcl") and tree.children(noun, "mark"))
     if noun.tag != "NNS" or not clausal or before is None or before.tag not in ("NN", "NNP"):

@@ -72,7 +72,7 @@ async def disconnect(ctx: rs.RuleContext) -> None:
 
 
 async def read(ctx: rs.RuleContext, text: str) -> Reading | None:
-    """Return the language model's reading of a text; None if there is none."""
+    """Return the language model's reading of a text; None without a model, or if the model fails."""
     reader = ctx[names.reader]
     try:
         return None if reader is None else await reader.read(text)
@@ -107,7 +107,7 @@ async def understand(ctx: rs.RuleContext) -> None:
     called = settings.agent_names if named else (ctx[interloc.agent],)
     present = tuple(name for name in ctx[interloc.users].values() if isinstance(name, str))
     intents, parser = tuple(ctx[names.intents].values()), pipeline(settings.pipeline)
-    async with ctx[names.lock]:  # before the first wait, because threads do not keep the order of the utterances
+    async with ctx[names.lock]:  # take the lock before any thread runs: threads do not keep the order of utterances
         designed = await asyncio.to_thread(intent_matcher, intents)
         reading = asyncio.create_task(read(ctx, heard))
         try:

@@ -54,7 +54,7 @@ class Statement:
     """The lemma of the predicate's last verb. For example, it is ``live`` in *used to live* and *want to live*."""
     phrases: tuple[Phrase, ...] = ()
     """All prepositional phrases of the clause, in order: *as a nurse*, *in a hospital*, *in Hamburg*. A name that
-    the clause gives to somebody is also here, without a preposition: *Rex*, in *we named our dog Rex*."""
+    the clause gives is also here, without a preposition: *Rex*, in *we named our dog Rex*."""
     when: str = ""
     """The time that the clause names, for example ``two years ago``, ``since 2010`` or ``next month``."""
     negated: bool = False

@@ -21,12 +21,12 @@ MOST = 64
 """The maximum number of triples from one text. A limit is needed, because enumerations multiply the triples."""
 
 _HABITS = word_set("go play train run attend sing dance paint cook swim ride eat teach stay drink")
-"""Verbs of habits. With a time, they tell a single event: *I painted a dragon yesterday*."""
+"""Verbs of habits. With a time, they describe a single event: *I painted a dragon yesterday*."""
 _LASTING = _HABITS | word_set(
     "be live work study have own like love hate enjoy prefer want need know believe speak belong smoke keep collect date share "
     "feel hope think"
 )
-"""Verbs of states and habits. In the past tense, a statement with such a verb no longer holds; others still hold."""
+"""Verbs of states and habits. In the past tense, statements with these verbs no longer hold: *I lived in Rome*."""
 _KNOWN_AS_TRUE = word_set(
     "know remember see notice forget realise realize find learn discover understand mean show prove"
 )
@@ -51,7 +51,7 @@ _TEMPORAL = word_set("when while until after before since")
 
 
 def triples_of(tree: Tree) -> tuple[Triple, ...]:
-    """Return the statements and questions of the text: at most `MOST` triples, each once."""
+    """Return the statements and questions of the text as triples: at most `MOST`, each once."""
     return tuple(statement.triple for statement in statements_of(tree))
 
 
@@ -74,7 +74,7 @@ def statements_of(
 
 
 class _Assertion:
-    """The flags that all triples of one clause share. They say if it is past, imagined, wanted, reported, or asked."""
+    """The flags that all triples of a clause share: whether it is past, imagined, wanted, reported, or asked."""
 
     def __init__(self, clause: Clause, entities: Sequence[Entity]) -> None:
         self._tree = clause.tree

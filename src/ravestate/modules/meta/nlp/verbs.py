@@ -46,7 +46,7 @@ _SHORT = {
 def heads_clause(tree: Tree, word: Word) -> bool:
     """Return whether `word` heads a clause.
 
-    A verb may, and so may a predicate without *be* or with *be* as an auxiliary.
+    Most such words are verbs. The others are predicates whose *be* is missing, or is tagged as an auxiliary.
     """
     if word.dep not in _HEADS:
         return False
@@ -106,14 +106,14 @@ def _following(tree: Tree, verb: Word) -> Word | None:
 
 
 def makes_future(tree: Tree, verb: Word) -> bool:
-    """Return whether the verb is the *going* of a future, which counts as an auxiliary."""
+    """Return whether the verb is the *going* of *going to visit*, which counts as an auxiliary of the future."""
     auxiliaries = tree.children(verb, "aux")
     bare = verb.dep == "ROOT" and not auxiliaries  # as in "what you going to do"
     return verb.low == "gon" or (verb.low == "going" and (bare or any(lemma_of(aux) == "be" for aux in auxiliaries)))
 
 
 def is_infinitive(tree: Tree, verb: Word) -> bool:
-    """Return whether the verb has *to*."""
+    """Return whether *to* stands before the verb, also in *wanna* and *gonna*."""
     return any(child.low in ("to", "na") for child in tree.children(verb, "aux"))
 
 

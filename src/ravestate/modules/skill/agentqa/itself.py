@@ -24,13 +24,13 @@ RELATIONS: Mapping[str, tuple[str, str]] = {
     "membership": ("member_of", "Organisation"),
     "makers": ("made_by", "Organisation"),
 }
-"""Fact → its relation in memory, and the type of the nodes at the other end. All other facts stay in the file."""
+"""Fact → its relation in memory, and the type of the node at the other end. All other facts are only in the file."""
 
 
 async def settle(life: Life, memory: Memory) -> Node:
-    """Update the agent's node in memory to match the file. Memory keeps facts that the file does not mention.
+    """Update the agent's node in memory to match the life file. Memory keeps facts that the file does not mention.
 
-    All changes are one transaction: the first call adds many nodes, and each transaction waits for the disk.
+    All changes are in one transaction, because each transaction waits for the disk, and the first call adds many nodes.
 
     Raises:
         PlatformError: Memory failed.

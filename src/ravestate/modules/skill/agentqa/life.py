@@ -1,4 +1,4 @@
-"""An agent's life: facts about the agent, and topics that people may ask it about. `read_life` reads a life."""
+"""An agent's life: facts about the agent, and topics that users may ask about. `read_life` reads a life from files."""
 
 from __future__ import annotations
 
@@ -20,14 +20,14 @@ class Topic:
     phrases: tuple[str, ...]
     """Answers, with facts in braces. The agent chooses an answer whose facts are known."""
     otherwise: tuple[str, ...] = ()
-    """Answers to use if each phrase needs an unknown fact. If `otherwise` is empty, other modules answer."""
+    """Answers to use if every phrase needs an unknown fact. If `otherwise` is empty too, other modules answer."""
     named: tuple[tuple[str, tuple[str, ...]], ...] = ()
-    """Pairs of a fact and answers. The answers suit a question that names a value of the fact. In them, ``{it}`` stands
-    for this value. If the value is a pair, ``{that}`` stands for its second text."""
+    """Pairs of a fact and answers. The answers suit a question that names a value of the fact. In an answer, ``{it}``
+    stands for this value. If the value is a pair, ``{that}`` stands for its second text."""
     unnamed: tuple[str, ...] = ()
     """Answers to a question about something particular (*can you dance*) that is not a value of a fact."""
     remarks: tuple[str, ...] = ()
-    """Regular expressions for remarks: utterances that only this module should answer. They match whole words."""
+    """Regular expressions for remarks, which only this module should answer. An expression matches whole words."""
     acts: tuple[str, ...] = ()
     """The user's acts and feelings that this topic answers, as `nlp.analysis` names them: ``insult``, ``grief``."""
 

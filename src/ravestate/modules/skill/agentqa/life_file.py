@@ -31,20 +31,21 @@ NAMED = ("it", "that")
 
 _PARTS = ("facts", "topics", "others")
 _ADDED = ("questions", "remarks", "acts")
-"""Parts of a topic that a user's file adds to the module's parts."""
+"""Parts of a topic to which a designer's file adds."""
 _TOLD = ("phrases", "otherwise", "unnamed")
-"""Parts of a topic that a user's file replaces."""
+"""Parts of a topic that a designer's file replaces."""
 
 
 def read_life(own: Path | None = None) -> Life:
-    """Read the agent's life from the module's file, with the changes in the user's file `own`.
+    """Read the agent's life from the module's file, with the changes in the designer's file `own`.
 
-    A fact in the user's file replaces the module's fact, and ``~`` removes it. A topic of the same name adds questions
-    and remarks to the module's topic, and replaces its phrases; ``~`` removes it. Topics with other names are new.
+    A fact in the designer's file replaces the module's fact; the value ``~`` removes the fact. A topic of the same name
+    adds questions, remarks and acts to the module's topic, and replaces the phrases; the value ``~`` removes the topic.
+    Topics with other names are new.
 
     Raises:
-        DeclarationError: The file has a mistake; the message names the line.
-        PlatformError: The file cannot be read.
+        DeclarationError: The designer's file has a mistake; the message names the line.
+        PlatformError: The designer's file cannot be read.
     """
     built_in = files("ravestate.modules.skill.agentqa") / "life.yaml"
     life = _parsed("life.yaml", built_in.read_text(encoding="utf-8"), None)
@@ -183,7 +184,9 @@ class _Reader:
 
     def _text(self, node: yaml.Node) -> str:
         if kind_of(node) != "scalar":
-            problem = f"this must be a text, not a {kind_of(node)}; quote a text with :, or with braces in front"
+            problem = (
+                f"this must be a text, not a {kind_of(node)}; quote a text that has a colon or begins with a brace"
+            )
             raise self._fault(node, problem)
         text = str(node.value).strip()
         if not text or _is_null(node):

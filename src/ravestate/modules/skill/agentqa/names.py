@@ -1,4 +1,4 @@
-"""The module, its settings, slots and signals."""
+"""The module agentqa: its settings, slots and signals."""
 
 from __future__ import annotations
 
@@ -24,7 +24,7 @@ class Settings(rs.Settings):
     """The agent's life file, and the delay before the agent offers to talk about itself."""
 
     life: Path | None = None
-    """The user's own life file. It changes the facts and topics that it mentions; all others stay."""
+    """The designer's life file. It changes the facts and topics that it mentions; all others stay."""
     prompt_after: Annotated[float, Field(gt=0)] = 60.0
     """Seconds of silence after which the agent invites the user to ask about the agent. This happens only once."""
 
@@ -45,14 +45,14 @@ asked = module.signal("asked", payload=Match)
 """The user asks something about the agent; the payload has the topic."""
 
 remarked = module.signal("remarked", payload=Remark)
-"""The user insults the agent, shows distress, or makes another remark that needs a response. The response outranks
+"""The user insults the agent, shows distress, or makes another remark that needs a response. This response outranks
 nearly all other answers. The payload has the topic."""
 
 life: rs.Slot[Life | None] = module.slot("life", None, type=Life, input=True)
-"""The agent's life, read from the files at startup. Facts in the agent's memory override them."""
+"""The agent's life, read from the files at startup. Facts in the agent's memory override the facts of these files."""
 
 mood: rs.Slot[str] = module.slot("mood", "fine", type=str, input=True)
-"""The agent's mood as an adjective: its answer to *how are you*. Any module may write it."""
+"""The agent's mood as an adjective, for the answer to *how are you*. Any module may write this slot."""
 
 
 def machine_clock() -> datetime:

@@ -15,7 +15,7 @@ from ravestate.modules.meta.nlp.analysis import Analysis
 from .life import Life
 
 SURE = 0.9
-"""The least confidence in an insult. Banter among friends resembles insults."""
+"""The least confidence at which an act or a feeling is a remark. It is high, because banter resembles insults."""
 _YOU = frozenset(["you", "your"])
 _I = frozenset(["i", "me", "my", "myself"])
 _ORDERS = frozenset(["shut", "go", "get", "fuck", "piss", "screw", "stop"])
@@ -32,7 +32,7 @@ class Remark:
 
 
 def remark_in(utterance: str, life: Life, names: Collection[str] = ()) -> Remark | None:
-    """Return the remark that matches an expression of a topic. If several topics match, take the first of `life`.
+    """Return the remark that matches an expression of a topic. If several topics match, take the first in `life`.
 
     Args:
         utterance: The user's words.
@@ -56,7 +56,7 @@ def remark_in(utterance: str, life: Life, names: Collection[str] = ()) -> Remark
 
 
 def act_in(analysis: Analysis, life: Life) -> Remark | None:
-    """Return the remark that shows an act or a feeling of a topic. If several topics match, take the first of `life`.
+    """Return the remark that shows an act or a feeling of a topic. If several topics match, take the first in `life`.
 
     A feeling counts only if the user says *you*, or says nothing else. So *useless* does not count in *useless. how
     long do eggs boil*.
@@ -80,7 +80,7 @@ def act_in(analysis: Analysis, life: Life) -> Remark | None:
 
 
 def _of_oneself(text: str, analysis: Analysis) -> bool:
-    """Return whether harsh words are about the user: *dumb, I feel so dumb*."""
+    """Return whether users say harsh words about themselves: *dumb, I feel so dumb*."""
     words, all_words = plain(text).split(), set(plain(analysis.text).split())
     return _YOU.isdisjoint(words) and words[0] not in _ORDERS and not _I.isdisjoint(all_words)
 

@@ -1,4 +1,4 @@
-"""The router: find the topic of a question about the agent by similar example questions."""
+"""The router: find the topic of a question about the agent, by comparison with example questions."""
 
 from __future__ import annotations
 
@@ -77,7 +77,7 @@ class Router:
         self._matcher = Matcher(examples, life.others, least=LEAST, encoder=encoder)
 
     def load(self) -> None:
-        """Load the model and learn the examples, once; the errors are those of `Matcher.load`."""
+        """Load the model and learn the examples, once. This raises the same errors as `Matcher.load`."""
         self._matcher.load()
 
     def route(self, utterance: str, names: Collection[str] = (), *, question: bool = False) -> Match | Miss:
@@ -117,7 +117,7 @@ def router_of(life: Life) -> Router:
 
 
 def _readings(sentence: str, *, question: bool) -> Iterator[str]:
-    """Yield a sentence, then the part after its last comma, then what it asks without its courtesies.
+    """Yield a sentence, then the part after its last comma, then the bare question in it.
 
     A question may be indirect, polite, or without its verb: *I wonder how old you are*, *may I ask your name*, *any hobbies*.
     """

@@ -26,12 +26,12 @@ from .router import Match, Miss, router_of
 from .telling import telling, without_question
 
 CERTAIN = 0.7
-"""The agent accepts a topic without further evidence if its confidence in the topic is at least this high."""
+"""The least confidence at which the agent accepts the topic of a question without further evidence."""
 STATED = 0.85
-"""The same threshold for a statement. It is higher, because a statement may resemble a question: *I don't know what to
-say*."""
+"""The same for a statement. This threshold is higher, because a statement may resemble a question: *I don't know what
+to say*."""
 STRAY = 0.9
-"""The same threshold for a question that does not mention the agent, and asks for advice: *what if I forget my lines*."""
+"""The same for a question that does not mention the agent, and asks for advice: *what if I forget my lines*."""
 _OWN = frozenset(("what_if", "how_to", "should", "say_what", "recommend", "worth", "predict"))
 """Kinds of questions (asks.yaml) about the user's own life."""
 _YOU = frozenset(("you", "your", "yours", "yourself"))
@@ -116,7 +116,7 @@ async def understand(ctx: rs.RuleContext) -> rs.Resign | None:
 
 @module.rule(when=rawio.input.changed, reads=(life, turns), writes=turns, emits=remarked)
 def heed(ctx: rs.RuleContext) -> None:
-    """Notice a remark by its words alone. Distress gets an answer even if the sentence models are missing.
+    """Notice a remark by its words alone, so that distress gets an answer even without the sentence models.
 
     The rule runs in a thread, because it waits for the normal form and the encoder.
     """
@@ -188,7 +188,7 @@ async def answer(ctx: rs.RuleContext) -> rs.Resign | None:
     writes=(verbaliser.intent, rawio.output, prompted),
     weight=0.9,
     # The intent starts a causal group of its own. In the group of `bored`, this rule has taken `rawio.output`, so the
-    # verbaliser could not write it.
+    # verbaliser could not write the output.
     detached=True,
 )
 async def offer(ctx: rs.RuleContext) -> rs.Resign | None:
@@ -210,7 +210,7 @@ def _returns(seen: Analysis) -> bool:
 
 
 def intent(topic: str, phrases: Sequence[str]) -> Intent:
-    """Return an intent with filled phrases. Braces that are left belong to facts, so they are escaped."""
+    """Return an intent with phrases whose facts are filled in. Other braces belong to facts, so they are escaped."""
     texts = [phrase.replace("{", "{{").replace("}", "}}") for phrase in phrases]
     return Intent(f"agentqa:{topic}", phrases={"en": texts})
 

@@ -47,7 +47,7 @@ def listed(items: Sequence[str]) -> str:
 
 
 def age(born: date, today: date) -> str:
-    """Return an age in years; below one year, in months; below two months, in days.
+    """Return an age in years. An age below one year is in months, and an age below two months in days.
 
     Example:
         >>> age(date(2024, 3, 1), date(2026, 2, 28)), age(date(2024, 3, 1), date(2024, 5, 1))
@@ -103,7 +103,7 @@ def _stems(text: str) -> set[str]:
 
 
 def _filled(phrases: Sequence[str], values: Mapping[str, str]) -> tuple[str, ...]:
-    """Fill in the phrases whose parameters are all known, and return them."""
+    """Return the phrases whose parameters are all known, with these parameters filled in."""
     known = [phrase for phrase in phrases if _parameters(phrase) <= values.keys()]
     return tuple(_BEGINNING.sub(lambda found: found[0].upper(), phrase.format_map(values)) for phrase in known)
 

@@ -27,19 +27,19 @@ RETRIEVED = 20
 READ = (1, 1, 2, 4, 8, 8)
 """The sizes of the batches in which passages are read until one is good enough. Only a follow-up uses the last two."""
 GOOD, VERY_GOOD, HOPELESS = 7.5, 9.0, -4.0
-"""Best scores that end the reading: `VERY_GOOD` after the first passage, and `GOOD` after later passages. `HOPELESS` or
-less ends it after three passages, except for a follow-up."""
+"""Best scores that end the reading: `VERY_GOOD` after the first passage, and `GOOD` after later passages. A best score
+of `HOPELESS` or less ends the reading after four passages, except for a follow-up."""
 ENOUGH = 0.4
 """The minimum share (0 to 1) of the question's words in a passage. Passages with fewer words are not read."""
 SHORT = 24
-"""The maximum number of passages from a document that the thread is about. These need no words of the question."""
+"""The maximum number of passages of each document that the thread is about. They need no words of the question."""
 LEVEL = 0.8
 """Two scores count as equal if they differ by less than this."""
 COMMON = 20_000
-"""The search skips a word that is in more passages than this, unless all words are so common."""
+"""The search skips a word that is in more passages than this, unless all words of the question are so common."""
 NAMES, KINDS = 0.4, 0.7
-"""The share of words to assume if a follow-up has only names: `KINDS` for a passage with a word of `Question.kinds`,
-`NAMES` for other passages."""
+"""If a follow-up has only names, the share of its words that a passage is assumed to have: `KINDS` for a passage with a
+word of `Question.kinds`, `NAMES` for other passages."""
 WORDS = 24
 """The maximum number of words to search for."""
 NOT_STATED = "no document states all of it"
@@ -77,7 +77,7 @@ class Answer:
 
 
 class Answerer:
-    """An index with a reader. The answerer opens the index at the first question, and again if its file is replaced.
+    """An index with a reader. It opens the index file at the first question, and again if the file is replaced.
 
     Thread-safe.
 
@@ -104,7 +104,7 @@ class Answerer:
         self._stems: Stems | None = None
 
     def load(self) -> None:
-        """Open the index, add the collection, and load the reader, unless this has happened. `answer` does the same.
+        """Open the index, add the collection, and load the reader, unless this is done already. `answer` does the same.
 
         Raises:
             PlatformError: The index cannot be opened, or the reader is not installed.
@@ -124,7 +124,7 @@ class Answerer:
 
         Args:
             heard: The utterance, its parse, or its question.
-            titles: The titles of documents that the thread is about; their first passages are compared as well.
+            titles: The titles of documents that the thread is about; their first passages are considered as well.
 
         Raises:
             PlatformError: See `load`.
@@ -149,11 +149,11 @@ class Answerer:
         )
 
     def states(self, needs: Sequence[Sequence[str]]) -> bool:
-        """Return whether a passage has a word of each of the `needs`. Takes less than a millisecond."""
+        """Return whether a passage has a word of each of the `needs`. This takes less than a millisecond."""
         return not needs or bool(self._opened().search_all(needs, 1))
 
     def titled(self, name: str) -> str:
-        """Return the title of a document about `name`, or "". Ignore case, and a *the* in front."""
+        """Return the title of a document about `name`, or "". Ignore case, and *the* at the beginning."""
         return self._opened().title_of(name)
 
     # ---------------------------------------------------------------------------------- internals

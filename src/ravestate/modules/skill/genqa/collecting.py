@@ -37,7 +37,7 @@ class Found:
     files: list[tuple[Path, str]] = field(default_factory=list[tuple[Path, str]])
     """The files, each with its source. An answer names this source."""
     roots: list[Path] = field(default_factory=list[Path])
-    """The folders under these paths. The index may still have files that were deleted from these folders."""
+    """The paths that are folders. The index may still have files that have been deleted from these folders."""
     unreadable: list[Outcome] = field(default_factory=list[Outcome])
 
 
@@ -71,7 +71,7 @@ def collect(found: Found, index: Index, reading: Reading | None = None) -> Itera
         reading: A callback for each document; a file may hold millions of them.
 
     Yields:
-        The result for each file, in order; deleted files come last.
+        The result for each file, in order; unreadable paths come first, and deleted files last.
 
     Raises:
         PlatformError: The disk is full, or another process has been writing for too long.
@@ -90,7 +90,7 @@ def collect(found: Found, index: Index, reading: Reading | None = None) -> Itera
 
 
 def name_of(path: Path) -> str:
-    """Return the path's name in the index; bytes that are not UTF-8 are spelt out."""
+    r"""Return the path's name in the index. Bytes that are not UTF-8 become escapes such as ``\xff``."""
     return os.fsencode(path).decode("utf-8", "backslashreplace")
 
 

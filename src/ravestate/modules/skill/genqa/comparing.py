@@ -62,7 +62,7 @@ def compared(heard: Parse, thread: Sequence[Turn], ask: Callable[[str], Answer])
 
 
 def aged(heard: Parse, thread: Sequence[Turn], ask: Callable[[str], Answer]) -> Answer | None:
-    """Return the age of a person at their death or at another event; None if the utterance does not ask for an age."""
+    """Return a person's age at their death or at another event; None if no age is asked for, or a date is missing."""
     words = [word for word in heard.asked if word.pos != "PUNCT"]
     low = [word.low for word in words]
     when = low.index("when", 1) if "when" in low[1:] else len(words)

@@ -22,8 +22,8 @@ def confidence(score: float, covered: float) -> float:
 def in_talk(score: float, own: float) -> float:
     """Return the probability (0 to 1) that a passage answers a follow-up.
 
-    A high score alone is enough, because a follow-up rarely has the document's own words. Doubt counts twice, because a
-    wrong answer is worse than no answer.
+    A high score alone is enough, because a follow-up rarely has the document's own words. The factors are twice the
+    fitted factors, which lowers the confidence in doubtful answers: a wrong answer is worse than no answer.
 
     Args:
         score: The reader's score of the passage.

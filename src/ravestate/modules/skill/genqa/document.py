@@ -1,4 +1,4 @@
-"""Documents, and the passages of documents. A passage can be an answer."""
+"""Documents, and the passages of documents."""
 
 from __future__ import annotations
 
@@ -8,7 +8,7 @@ from dataclasses import dataclass
 
 @dataclass(frozen=True, slots=True)
 class Passage:
-    """One sentence, or two."""
+    """One or two sentences that can be an answer."""
 
     text: str
     hints: str = ""

@@ -1,4 +1,4 @@
-"""The answer to an utterance in a conversation. An utterance may have several readings; the best answer counts."""
+"""The answer to an utterance in a conversation. If an utterance has several readings, the best answer counts."""
 
 from __future__ import annotations
 
@@ -131,7 +131,7 @@ def _again(text: str, before: str) -> str:
 
 
 def _decided(answerer: Answerer, question: Question, settings: Settings, titles: Sequence[str]) -> Answer:
-    """Return the answer. Try `other_wording` first. A vague question gets no sure answer."""
+    """Return the answer of the documents, first to `other_wording`. A vague question gets no sure answer."""
     if not question.declined and (other := other_wording(question.text)):
         decided = answerer.answer(other, titles)
         if decided.confidence >= settings.sure:
@@ -148,7 +148,7 @@ def _decided(answerer: Answerer, question: Question, settings: Settings, titles:
 
 
 def other_wording(question: str) -> str:
-    """Return a question whose answer decides a yes-or-no question, or that asks the same in full; empty if there is none.
+    """Return a question that documents answer better, and that decides the given question; empty if there is none.
 
     Example:
         >>> other_wording("How far is the moon?")

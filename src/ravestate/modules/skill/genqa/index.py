@@ -142,7 +142,7 @@ class Index:
         return found[0][0] if found else ""
 
     def title_of(self, name: str) -> str:
-        """Return the title that equals `name`, or "". Ignore case, and a *the* in front."""
+        """Return the title that equals `name`, or "". Ignore case, and *the* at the beginning."""
         bare = name.lower().removeprefix("the ")
         query = "SELECT title FROM documents WHERE title COLLATE NOCASE IN (?, ?) LIMIT 1"
         found = self._rows(query, bare, f"the {bare}")
@@ -163,7 +163,7 @@ class Index:
         return [Found(*row) for row in self._rows(query, title, limit)]
 
     def search(self, words: Sequence[str], limit: int, *, without: Sequence[str] = ()) -> list[Found]:
-        """Return the passages that share most with `words`, by BM25, best first.
+        """Return the passages that match `words` best, ranked by BM25, best first.
 
         Args:
             words: Any text; operators of the query language are plain words here.

@@ -1,4 +1,4 @@
-"""The module, its settings, slot and signal."""
+"""The module genqa: its settings, slot and signal."""
 
 from __future__ import annotations
 
@@ -23,14 +23,14 @@ class Settings(rs.Settings):
     index: Path | None = None
     """The file that ``ravestate genqa index`` writes; by default ``ravestate/genqa.sqlite`` in the user's data folder."""
     collection: bool = True
-    """Whether to also search the collection that comes with Ravestate: countries, nature, the calendar."""
+    """Whether to also search the collection that comes with Ravestate: countries, people, nature, culture."""
     sure: Probability = 0.7
     """The minimum confidence of an answer that the agent states as certain."""
     unsure: Probability = 0.5
-    """The minimum confidence of an answer that the agent states as uncertain. Below it, the module is silent."""
+    """The minimum confidence of an answer that the agent states as uncertain. Below this, the module is silent."""
     wording: Literal["sentence", "model"] = "sentence"
     """``sentence``: the document's own words; ``model``: the words of wildtalk's language model. The prompt has only the
-    sentences that were found, and an answer with any other name or number is dropped."""
+    sentences that were found, and an answer with any other name or number is not used."""
     reader: Path | None = None
     """The folder of another cross-encoder (``model.onnx``, ``tokenizer.json``); the confidence is calibrated for the
     bundled cross-encoder."""

@@ -1,4 +1,4 @@
-"""The place of the index, and one `Answerer` for all contexts."""
+"""The path of the index, and the `Answerer` that all contexts with the same settings share."""
 
 from __future__ import annotations
 
@@ -22,7 +22,7 @@ def path_of(settings: Settings) -> Path:
 
 
 def answerer_of(settings: Settings) -> Answerer:
-    """Return the answerer for these settings; all contexts of the process share it."""
+    """Return the answerer for these settings. All contexts of the process with the same settings share it."""
     key = (path_of(settings), settings.collection, settings.reader)
     with _making:
         if key not in _answerers:

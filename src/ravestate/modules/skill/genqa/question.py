@@ -47,11 +47,11 @@ class Question:
     words: tuple[str, ...] = ()
     """The words for the question's subject, in order, each once."""
     kinds: tuple[str, ...] = ()
-    """The words for the kind of answer."""
+    """The words for the kind of answer, such as *population*."""
     given: frozenset[str] = frozenset()
     """The words of the names in the question; every passage about the named things has these words."""
     needs: tuple[tuple[str, ...], ...] = ()
-    """The qualifiers of the question: a passage must have a word of each."""
+    """The qualifiers of the question: a passage must have a word of each tuple."""
     avoids: tuple[str, ...] = ()
     """Words that a passage must not have: other ranks, the other sex."""
     kind: QuestionWord | None = None
@@ -60,7 +60,7 @@ class Question:
     follows: bool = False
     """Whether the question was completed from earlier questions. If so, names do not count for the confidence."""
     counted: str = ""
-    """The noun after *how many*: a passage must have it in its own text; empty if there is none."""
+    """The noun after *how many*, which a passage must have in its own text; empty if there is none."""
     declined: str = ""
     """The reason why documents cannot answer the question; empty if they can."""
 
@@ -89,7 +89,7 @@ class Parse:
 
 @lru_cache(maxsize=REMEMBERED)
 def parse(text: str) -> Parse:
-    """Parse a text with the pipeline of nlp. A recent text takes no time, because readings share their parts."""
+    """Parse a text with the pipeline of nlp. Recent parses are kept, because several readings contain the same text."""
     tree, entities = pipeline("").read(printable(text))
     return parsed(tree, entities, question_of(tree))
 
@@ -284,7 +284,7 @@ def _picked(tree: Tree, rank: Word) -> Iterator[Word]:
 
 
 def is_vague(question: Question) -> bool:
-    """Return whether a question is about an *it* or *they*, and says little else.
+    """Return whether a question says little more than *it* or *they*.
 
     Example:
         >>> is_vague(as_question("Can they fly?")), is_vague(as_question("When did it start to rain?"))

@@ -16,7 +16,7 @@ from .document import Document
 from .passages import passages_of
 
 LARGEST = 64 << 20
-"""The maximum size of a text or a page, in bytes. The whole content is held in memory."""
+"""The maximum size of a text file or an HTML page, in bytes. The whole file is held in memory."""
 _MARKS = {
     codecs.BOM_UTF8: "utf-8", codecs.BOM_UTF32_LE: "utf-32-le", codecs.BOM_UTF32_BE: "utf-32-be", codecs.BOM_UTF16_LE: "utf-16-le",
     codecs.BOM_UTF16_BE: "utf-16-be",
@@ -47,10 +47,10 @@ def read(path: Path, source: str) -> Iterator[Document]:
 
     Args:
         path: The file; the ending of its name gives its kind.
-        source: The source that answers name.
+        source: The source that an answer names.
 
     Raises:
-        Unreadable: The file cannot be read, is of another kind than its ending, or a library is missing.
+        Unreadable: The file cannot be read, its ending and its content differ, or a library is missing.
     """
     kind = kind_of(path)
     if kind is None:
@@ -118,9 +118,9 @@ def documents_in(content: bytes | str, title: str, source: str, top: str | None 
     """Yield the documents of a page, one for each heading.
 
     Args:
-        content: The page; bytes in any encoding that it declares.
+        content: The page; bytes may be in any encoding that the page declares.
         title: The title, if the page has none of its own.
-        source: The source that answers name.
+        source: The source that an answer names.
         top: The first part of each document's title; by default the page's title.
 
     Raises:

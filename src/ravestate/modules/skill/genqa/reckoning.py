@@ -98,7 +98,7 @@ def reckon(
         text: The utterance.
         told: The latest answers, oldest first; *that* refers to them.
         today: The date; *how long ago* counts from it.
-        rates: Currency → its value; all values are in one currency.
+        rates: Currency → its value. All values are in the same currency.
         now: The time of day; *how long till noon* counts from it.
 
     Raises:
@@ -175,7 +175,7 @@ def measured(text: str, after: Sequence[str] = ()) -> list[Quantity]:
 
 
 def focused(question: str, answer: str) -> str:
-    """Return the parts of an answer; parts with most words of the question come first. Names do not count.
+    """Return the parts of an answer, the part with most words of the question first. Words such as *the* do not count.
 
     Example:
         >>> focused("How high is it?", "The bridge is 512 metres long and 63 metres high.")
@@ -191,7 +191,7 @@ def focused(question: str, answer: str) -> str:
 
 
 def both(one: str, other: str) -> tuple[float, float, str] | None:
-    """Return a number of each text, in one unit, and the word for this unit; None if no two measure the same thing."""
+    """Return one number of each text in the same unit, and the word for the unit; None if no numbers are comparable."""
     pairs = ((left, left.beside(right)) for left in measured(one) for right in measured(other))
     return next(((*values, left.word) for left, values in pairs if values is not None), None)
 
@@ -448,7 +448,7 @@ def apart(one: Dated, other: Dated, unit: str = "year") -> str:
 
 
 def _until(asked: re.Match[str], now: time) -> str:
-    """Return the minutes or hours until a time of day. If it has no *am* or *pm*, take the next such time."""
+    """Return the minutes or hours until a time of day. Without *am* or *pm*, take the next time that fits."""
     hour = int(asked["hour"] or (0 if asked["name"] == "midnight" else 12))
     if hour > 24:
         return ""

@@ -47,7 +47,7 @@ async def choose_wording(ctx: rs.RuleContext) -> None:
 # each statement for seconds. During these seconds, `idle` would not see the silence.
 @module.rule(when=nlp.text.changed & nlp.analysis.changed, reads=(thread, rawio.output), writes=thread, emits=found)
 def find(ctx: rs.RuleContext) -> rs.Resign | None:
-    """Search the documents."""
+    """Search the documents for an answer to the utterance."""
     settings: Settings = ctx.settings
     analysis = ctx.payload(nlp.analysis.changed)
     if analysis is None:

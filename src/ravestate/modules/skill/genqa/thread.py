@@ -66,7 +66,7 @@ class Turn:
     asked: tuple[Thing, ...] = ()
     """The things in the question, most likely first."""
     told: tuple[Thing, ...] = ()
-    """The things that the answer names and the question does not, most likely first."""
+    """The things that only the answer names, not the question; most likely first."""
     items: tuple[str, ...] = ()
     """The members of a list in the answer."""
     sexes: tuple[tuple[str, str], ...] = ()
@@ -91,7 +91,7 @@ class Reading:
 
     text: str
     prior: float = 0.0
-    """How likely the reading is before the documents are asked (log odds)."""
+    """The likelihood of the reading before the documents are searched, in log odds."""
     about: str = ""
     """The subject, if it comes from the thread; `text` may name it, too."""
     new: str = ""
@@ -127,7 +127,7 @@ def overheard(said: str, at: float) -> Turn:
 
 
 def things_of(seen: Parse) -> list[Thing]:
-    """Return the noun phrases of a text; *the mayor of Tarm* is also one phrase as a whole."""
+    """Return the noun phrases of a text. *The mayor of Tarm* gives *the mayor*, *Tarm*, and the whole phrase."""
     found: dict[str, Thing] = {}
     for word in seen.tree.words:
         own = phrase_of(seen.tree, word) if is_noun(word) else []

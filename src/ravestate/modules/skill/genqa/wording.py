@@ -1,4 +1,4 @@
-"""The wording of an answer: the document's own words, or those of a language model, after a check."""
+"""The wording of an answer: the document's own words, or the checked words of a language model."""
 
 from __future__ import annotations
 
@@ -42,7 +42,7 @@ def intent_of(answer: Answer, text: str, settings: Settings) -> verbaliser.Inten
 
 
 def wording_rule(settings: Settings) -> rs.Rule[Any, Any]:
-    """Return a rule that lets the language model word the answer. The rule resigns if the model adds something.
+    """Return a rule that lets the language model word the answer. The rule resigns if `is_supported` is false.
 
     The rule is for a context with wildtalk. It outranks `say`, the rule that answers with the document's own sentence.
     If the rule resigns or fails, `say` answers.

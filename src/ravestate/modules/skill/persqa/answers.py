@@ -13,7 +13,7 @@ from .values import value_of
 
 
 def _any(name: str) -> str:
-    """Return a pattern that matches each phrase of a list in `WORDS`."""
+    """Return a pattern that matches any phrase of a list in `WORDS`."""
     return "|".join(map(re.escape, sorted(WORDS[name], key=len, reverse=True)))
 
 
@@ -40,7 +40,7 @@ _PIECE = re.compile(
 )
 """The end of an answer that a clause follows: *hiking! And I'm in a club*."""
 _CALL = re.compile(_PIECE.pattern.replace("|why|what|how|where|who", ""), re.IGNORECASE)
-"""As before, but for a name, which may also call the agent: *Tom, where are you?*."""
+"""The same for a name. A question after it is no end, because the name may be a call: *Tom, where are you?*."""
 _WHERE = re.compile(r"\s(?:in|at|from|for|on|near|by)\s(.+)$", re.IGNORECASE)
 _PLACED = frozenset(["name", "people", "place", "work", "subject"])
 """Kinds of values that leave out a place after them: in *teacher at a school*, the value is *teacher*."""
@@ -102,9 +102,9 @@ def self_asked(text: str, seen: nlp.Analysis) -> list[Fact]:
 
 
 def opening(text: str, topic: str, seen: nlp.Analysis) -> list[Fact]:
-    """Return the answer in the words before the first clause: *hiking! And I'm in a club*; empty without an answer.
+    """Return the facts in the words before the first clause: *hiking! And I'm in a club*.
 
-    If there is none, the answer may be the object of a clause about *it* or *that*: *at the moment that is Porto*.
+    If there are none, read the object of a clause about *it* or *that*: *at the moment that is Porto*.
     """
     ends = _CALL if topic == "name" else _PIECE
     pieces = [piece for piece in ends.split(text) if piece.strip(" ,.")]
@@ -133,7 +133,7 @@ def without_opening(text: str) -> str:
 
 
 def may_stand_alone(seen: nlp.Analysis, *, clear: bool = False) -> bool:
-    """Return whether an utterance may be a bare answer. Sentences about others, requests, and a mere yes or no are not.
+    """Return whether an utterance may be a bare answer. Sentences about others, requests, and a mere yes or no may not.
 
     Args:
         seen: The analysis of the utterance.

@@ -1,9 +1,9 @@
 """Changes of known facts: statements that end a fact, or replace its value by another.
 
-A statement changes a fact under two conditions. It must be the user's own: the user is the subject, and nobody reports
-the statement. And its verb must end facts of this topic, with the value itself as the object. A correction by sound or
-spelling (*Lora with an L*) works only for a fact that either side mentioned in the last utterances. `contrast` reads the
-other corrections. Everything else leaves the facts alone.
+A statement changes a fact under two conditions. First, the user is its subject, and it is not reported speech. Second,
+its verb ends facts of this topic, with the value itself as the object. A correction by sound or spelling (*Lora with an
+L*) works only for a fact that the user or the agent has just mentioned. ``contrast.py`` reads all other corrections.
+Other utterances change no facts.
 """
 
 from __future__ import annotations
@@ -32,7 +32,7 @@ _FIXED = re.compile(
 """Words with which a user corrects the spelling or the sound of a value."""
 _PARTLY = re.compile(r"(?:n['’]t|\bnot) (?:just|only|merely|simply)\b", re.IGNORECASE)
 ALIKE = 0.6
-"""The least share of common letters of a value and the value for which it was mistaken: *Lora*, *Nora*."""
+"""The least share of common letters of two values of which one was mistaken for the other: *Lora*, *Nora*."""
 
 
 def ended_by(reader: Reader, said: nlp.Statement) -> dict[str, tuple[str, ...]]:
@@ -65,7 +65,7 @@ def ended_by(reader: Reader, said: nlp.Statement) -> dict[str, tuple[str, ...]]:
 
 
 def _ending(topic: str) -> str:
-    """Return the list of verbs that end facts of a topic."""
+    """Return the name of the list in `WORDS` with the verbs that end facts of a topic."""
     about = TOPICS[topic]
     if about.relation == "partner_of" or about.type == "Animal":
         return "ending_partner" if about.type == "Person" else "ending_pet"
@@ -129,7 +129,7 @@ def switched_in(reader: Reader, said: nlp.Statement) -> Link | None:
 
 
 def renamed_in(reader: Reader, said: nlp.Statement) -> Iterator[tuple[str, str, str]]:
-    """Yield the old topic, the new topic and the name of somebody known: *Felix is a dog*, if he was taken for a cat.
+    """Yield the old topic, the new topic and the name of a person or pet: *Rex is a dog*, if Rex was taken for a cat.
 
     The new topic is empty if the user only denies the old topic: *Tom is my cousin, not a friend*."""
     name, object = said.subject.text, said.object
@@ -182,7 +182,7 @@ def is_brief(said: nlp.Statement) -> bool:
 
 
 def may_correct(seen: nlp.Analysis, topic: str) -> bool:
-    """Return whether an utterance may correct a fact just mentioned. It may if its verbs only name, say or mean."""
+    """Return whether an utterance may correct a fact just mentioned: its only verbs are *say*, *mean* and the like."""
     opposed = {text for one in seen.contrasts for text in (one.right.text, one.wrong.text)}  # the tagger may see verbs
     finite = {
         word.lemma for word in seen.tree.words if word.tag in ("VBD", "VBZ", "VBP", "MD") and word.text not in opposed

@@ -2,7 +2,7 @@
 
 The parse gives the wrong value and the right value. The wrong value tells which fact the user corrects: a known fact about
 them or their relatives, no matter when it was mentioned. Without a wrong value, users correct the fact that was mentioned
-last. If none was, they correct the only known fact of that kind.
+last. If no fact was mentioned lately, they correct the only known fact of that kind.
 """
 
 from __future__ import annotations
@@ -26,14 +26,14 @@ from .wording import Facts, among, mentioned, same
 _SUBJECTS = frozenset(["it", "that", "this", "he", "she", "they", "i"])
 _CONTENT = frozenset(["NOUN", "PROPN", "NUM", "ADJ", "VERB", "X"])
 _PLAIN: dict[str, float] = {"place": 0.0, "number": 0.0, "organisation": 0.5, "work": 0.5}
-"""Kinds of values that alone tell which fact is meant, each with the least likeness to other values of its kind."""
+"""Kind whose values alone tell which fact is meant → the least `likeness` of such a value to this kind."""
 _MEANING = frozenset(["meant", "mean", "said"])
 _POINTING = frozenset(["that", "this", "these", "those"])
 
 
 @dataclass(frozen=True, slots=True)
 class Correction:
-    """The facts and the free statements that a correction makes, and those that it removes."""
+    """The facts and free statements that a correction adds, and the free statements that it removes (`gone`)."""
 
     facts: tuple[Fact, ...] = ()
     free: tuple[Told, ...] = ()
@@ -57,7 +57,7 @@ def corrected_in(
         asked: Whether a question of the agent is open. If so, a correction must name the wrong value.
     """
     seen, recent = reader.seen, talk.correctable
-    if not recent or talk.age:  # the user's last utterance tells more than the agent's last words, which may come late
+    if not recent or talk.age:  # a fact of the user's last utterance takes precedence over the agent's last words
         recent = mentioned(talk.spoken, reader.known) or recent
     latest = talk.latest if recent == talk.last else reader.known.get(recent, ())
     for wrong, right in _pairs(reader):
@@ -91,7 +91,7 @@ def _instead(topic: str, value: str, wrong: Sequence[str]) -> tuple[Fact, ...]:
 
 
 def _pairs(reader: Reader) -> Iterator[tuple[str, str]]:
-    """Yield the wrong and the right words: of the contrasts, and of two clauses (*it's not Leeds, it's Leipzig*)."""
+    """Yield pairs of wrong and right words, from contrasts and from two clauses (*it's not Leeds, it's Leipzig*)."""
     seen = reader.seen
     for one in seen.contrasts:
         yield one.wrong.text, one.right.text
@@ -110,14 +110,14 @@ def _pairs(reader: Reader) -> Iterator[tuple[str, str]]:
 
 
 def _is_about(seen: nlp.Analysis, topic: str, recent: str) -> bool:
-    """Return whether the words beside a contrast say nothing about other things than a fact."""
+    """Return whether the words beside a contrast may be about the fact of this topic, and about nothing else."""
     pointing = any(said.subject.text.lower() in _POINTING for said in seen.statements)
     now = any(word.low in NOW for word in seen.tree.words)
     return may_correct(seen, topic) and not now and (topic == recent or not pointing)
 
 
 def _may_retell(seen: nlp.Analysis, one: Told, wrong: str) -> bool:
-    """Return whether a contrast may correct a free statement: it repeats the statement's verb, or has none."""
+    """Return whether a contrast may correct a free statement: the contrast has the statement's verb, or no verb."""
     if not same(one.object, wrong):
         return False
     about = {one.subject.lower(), one.who.lower(), *_SUBJECTS}
@@ -128,10 +128,10 @@ def _may_retell(seen: nlp.Analysis, one: Told, wrong: str) -> bool:
 
 
 def _opposed(known: Facts, rest: str, recent: str, latest: Sequence[str], seen: nlp.Analysis, *, answers: bool) -> str:
-    """Return the topic that words such as *no, Leipzig* correct; empty if it is not clear.
+    """Return the topic that words such as *no, Leipzig* correct; empty if this is not clear.
 
-    It is the fact mentioned last, or else the only fact of that kind. If the agent has asked something else, the words
-    answer its question (`answers`).
+    It is the topic mentioned last, or else the only known topic of that kind. If the agent's last words were a question
+    (`answers`), the words may answer it, so only the topic mentioned last counts.
     """
     values = {
         topic: [one for fact in answer(rest, topic, seen) for one in fact.values] for topic in {*known, recent} - {""}

@@ -1,4 +1,4 @@
-"""The topic that the words around a value tell, for sentences that the table of topics does not list.
+"""Find the topic of a value by the words around the value, for sentences that the table of topics does not list.
 
 A stand-in of the same kind replaces the value, so only the words around it are compared with the examples in
 ``frames.yaml``. *I came into the world in Sousse* becomes *I came into the world in Rome*. This resembles *I entered this
@@ -30,7 +30,7 @@ _STAND_INS = {
 }  # fmt: skip
 """A class of nouns → the stand-in for its nouns."""
 _PROPER = ("place", "workplace", "person")
-"""The classes to which a name may belong: the words around it decide."""
+"""The classes to which a name may belong. The words around the name decide."""
 _ASIDE = frozenset(["punct", "cc", "conj", "advcl", "parataxis", "intj", "mark", "meta", "dep", "npadvmod"])
 _OWN = frozenset(["i", "me", "my", "mine"])
 SURE = 0.6
@@ -38,7 +38,7 @@ SURE = 0.6
 
 
 def framed_in(reader: Reader, said: nlp.Statement) -> Link | None:
-    """Return the topic of a statement, with its value, by the words around the value."""
+    """Return the topic of a statement by the words around a value, with the phrase of this value."""
     clause = "" if said.question or said.request else _clause(reader, said)
     theirs = said.subject.head == "name" or _is_person(reader, said.subject)  # "my sister lives in Rome"
     if not _OWN & set(re.findall(r"[a-z]+", clause.lower())) or (theirs and said.object.person != "I"):

@@ -1,7 +1,7 @@
 """The user's name in an introduction: *it's me, Ilka*, *Ilka here*, *I'm Ilka*.
 
-`nlp` finds the words in the place of a name. A word that English does not have is a name; of a word that English has, the
-entity or the examples decide. The parser and the examples know few of the world's names.
+`nlp` finds the words in the place of a name. A word that English does not have is a name. For a word that English has,
+the named entities or the examples decide. The parser and the examples know few of the world's names.
 """
 
 from __future__ import annotations
@@ -32,7 +32,7 @@ def introduced_in(reader: Reader) -> str:
 
 
 def given_name(words: str, seen: nlp.Analysis) -> str:
-    """Return words as the name of a person; empty if they are none: *Ilka*, but not *tired*."""
+    """Return words as the name of a person; empty if they are no name: *Ilka*, but not *tired*."""
     first, *others = words.split() or [""]
     if not first or any(word.islower() and not _is_foreign(word) for word in others):
         return ""  # "Hamburg calling"
@@ -45,7 +45,7 @@ def given_name(words: str, seen: nlp.Analysis) -> str:
 
 
 def _is_foreign(word: str) -> bool:
-    """Return whether English has no such word, nor a frequent one for which it may be a typing error."""
+    """Return whether a word is neither English, nor a likely typing error for a frequent English word."""
     lexicon, low = loaded_lexicon(), word.lower()
     if lexicon is None or len(word) < 3 or not lexicon.rare(low):
         return False
@@ -53,7 +53,7 @@ def _is_foreign(word: str) -> bool:
 
 
 def _means_another(reader: Reader, name: str) -> bool:
-    """Return whether *it is Ilka* answers a question about another, corrects another value, or names a place."""
+    """Return whether *it is Ilka* answers a question about somebody else, corrects another value, or names a place."""
     topic = reader.asked or reader.recent
     if topic != NAME and any(same(one.right.text, name) for one in reader.seen.contrasts):
         return not any(among(one.wrong.text, reader.known.get(NAME, ())) for one in reader.seen.contrasts)

@@ -34,7 +34,7 @@ class Link:
 
 
 def predicate_of(said: nlp.Statement) -> str:
-    """Return the predicate without *not*, and without verbs that only begin or continue it: *work for* of *start to work for*."""
+    """Return the predicate without *not*, and without verbs of beginning or continuing: *work* of *start to work*."""
     words = said.triple.predicate.removeprefix("not ").split()
     while len(words) > 1 and (words[0] in WORDS["beginning"] or words[:2] == ["end", "up"]):
         first = 2 if words[0] == "end" or words[1] == "to" else 1
@@ -84,7 +84,7 @@ def pursuit_in(reader: Reader, said: nlp.Statement) -> Link | None:
 
 
 def trade_in(reader: Reader, said: nlp.Statement) -> Link | None:
-    """Return the occupation in *I drive trams for a living*, or *I drive trams*, if the agent asked for it."""
+    """Return the occupation in *I drive trams for a living*; if the agent asked for it, also in *I drive trams*."""
     asked = reader.asked == "occupation" and said.verb not in WORDS["states"] | WORDS["passing"] | WORDS["pastimes"]
     living = any(phrase.preposition == "for" and phrase.head == "living" for phrase in said.phrases)
     direct = bool(said.object.text) and not said.object.preposition

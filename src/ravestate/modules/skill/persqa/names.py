@@ -1,4 +1,4 @@
-"""The module, its settings, slots and signals."""
+"""The module persqa: its settings, slots and signals."""
 
 from __future__ import annotations
 
@@ -20,7 +20,7 @@ from .topics import ASKED
 def _known(topics: tuple[str, ...]) -> tuple[str, ...]:
     for name in topics:
         if name not in ASKED:
-            raise ValueError(f"there is no topic {name!r}{nearest(name, ASKED)}; there are {', '.join(ASKED)}")
+            raise ValueError(f"there is no topic {name!r}{nearest(name, ASKED)}; the topics are {', '.join(ASKED)}")
     return topics
 
 
@@ -38,13 +38,13 @@ class Settings(rs.Settings):
     confirm: bool = True
     """Whether a user who gives a name that memory already holds must answer a question, to prove that they are this person."""
     ignored: Annotated[int, Field(ge=1)] = 2
-    """After this many unanswered questions in a row, the agent asks no more until the user speaks."""
+    """After this many unanswered questions in a row, the agent asks nothing until the user speaks."""
 
 
 module = rs.Module("persqa", requires=[rawio, nlp, ontology, verbaliser, interloc, idle], settings=Settings)
 
 who: rs.Slot[ontology.Node | None] = module.slot("who", None, type=ontology.Node)
-"""The user's node in memory; None as long as their name is not known."""
+"""The user's node in memory; None while their name is not known."""
 
 facts: rs.Collection[tuple[str, ...]] = module.collection("facts")
 """Values by topic (``home``, ``hobby``, ...); an empty tuple means that the user has none."""
@@ -53,13 +53,13 @@ told: rs.Collection[Told] = module.collection("told")
 """The user's free statements about themselves and others, oldest first: *Jonas plays the violin*."""
 
 talk: rs.Slot[Talk] = module.slot("talk", Talk(), type=Talk)
-"""The state of the conversation about the user: the open question, and the topics that they refused."""
+"""The state of the conversation about the user, such as the open question, and the topics that the user refused."""
 
 reply = module.signal("reply", payload=Intent)
 """The user has told or asked something about themselves; the payload is the reply."""
 
 noted = module.signal("noted", payload=Noted)
-"""Memory has looked up the user, or has saved what they told."""
+"""Memory has looked up the user, or has saved facts about them."""
 
 forgotten = interloc.forgotten
 """Persqa has forgotten the user, so other modules delete the user's data as well. This is a signal of `interloc`."""

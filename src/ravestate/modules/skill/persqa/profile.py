@@ -46,7 +46,7 @@ def learn(facts: Facts, told: Iterable[Fact]) -> News:
             continue
         before = now.pop(topic, ())
         left = without(before, values) if values else ()
-        # A user who leaves a place or an organisation may have another one, so note no empty value.
+        # A user who leaves a place or an organisation may have another one, so do not note that there is none.
         if left or (not values and TOPICS[topic].kind not in ("place", "organisation")):
             now[topic] = left
         if topic == "occupation" and not left:

@@ -57,7 +57,7 @@ class Reader:
         self.person = person or next(filter(None, owned), "")
 
     def facts(self) -> list[Fact]:
-        """Return the facts that the user states, one for each topic."""
+        """Return the facts that the user states or denies, at most one of each for a topic."""
         told: dict[str, tuple[str, ...]] = {}
         gone: dict[str, tuple[str, ...]] = {}
         denied = ""  # the topic of the last denial: "my name isn't Ada, it's Ida"
@@ -114,7 +114,7 @@ class Reader:
         return [*(Fact(topic, values) for topic, values in told.items() if values), *struck]
 
     def asks(self) -> Fact | None:
-        """Return the fact that the user asks for. It has values if the user wants these values confirmed."""
+        """Return the fact that the user asks for. Its values are those to confirm or deny: *do I live in Ulm*."""
         kinds = nlp.QuestionWord
         for said in self.seen.statements:
             if not said.question or said.conditional:
@@ -314,6 +314,7 @@ class Reader:
     # ----------------------------------------------------------------------------------------------- words
 
     def values(self, link: Link, *, denied: bool = False) -> tuple[str, ...]:
+        """Return the values of a link's topic in the link's phrase."""
         topic, phrase = TOPICS[link.topic], link.phrase
         if phrase is None:
             return ()
@@ -324,6 +325,7 @@ class Reader:
         return self.fitting(link.topic, raw, sure=(link.sure and not denied) or link.topic == self.asked == NAME)
 
     def fitting(self, topic: str, raw: Iterable[str], *, sure: bool = True) -> tuple[str, ...]:
+        """Return the texts that can be values of a topic, in memory's spelling."""
         return tuple(filter(None, (value_of(text, TOPICS[topic], self.seen, sure=sure) for text in raw)))
 
     def verb(self, said: nlp.Statement) -> Word | None:

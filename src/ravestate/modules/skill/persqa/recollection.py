@@ -14,7 +14,7 @@ from ravestate.modules import nlp
 CLEARLY = 2.0
 """The least lead of the best sentence over the second best, in logits. The scores themselves differ by question."""
 LEAST = -7.0
-"""The least score of an answer, in logits. A wrong memory is worse than none."""
+"""The least score of an answer, in logits. A wrong answer is worse than no answer."""
 LIKELY = 0.4
 """The least confidence that the user wants to be reminded, for a question without a verb of memory."""
 LONGEST = 160
@@ -57,7 +57,7 @@ def asks_for_words(seen: nlp.Analysis) -> bool:
 def recollect(question: str, sentences: Sequence[str]) -> str:
     """Return the words that answer a question: one sentence, or two adjacent sentences; empty if no answer is clear.
 
-    Takes about 3 ms per sentence.
+    This takes about 3 ms per sentence.
     """
     known = [one for one in dict.fromkeys(sentences) if len(one) <= LONGEST and len(one.split()) >= SHORTEST]
     if not known:

@@ -17,7 +17,7 @@ MOST = 200
 
 
 def named(graph: ontology.Graph, name: str) -> ontology.Node | None:
-    """Return the person of this name. If there are several, return the person with most relations, then the oldest."""
+    """Return the person of this name. If there are several, take the one with the most relations, then the oldest."""
     people = namesakes(graph, name)
     return max(people, key=lambda person: len(graph.relations(person))) if len(people) > 1 else next(iter(people), None)
 
@@ -28,7 +28,7 @@ def namesakes(graph: ontology.Graph, name: str) -> list[ontology.Node]:
 
 
 def has_talked(graph: ontology.Graph, person: ontology.Node) -> bool:
-    """Return whether a person in memory has talked to the agent. Others may only have mentioned the person."""
+    """Return whether a person in memory has talked to the agent, and was not only mentioned by other people."""
     relations = graph.relations(person)
     return not relations or any(relation.source.id == person.id for relation in relations)
 

@@ -23,7 +23,7 @@ from .wording import among, clauses, joined, learned, memorable, same, say, stat
 
 T = TypeVar("T")
 BRIEF = 9
-"""The maximum number of words of an utterance that a stock reply to its fact answers. Longer ones have more to say."""
+"""The maximum number of words of an utterance for which a stock reply to its fact is enough."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -31,11 +31,11 @@ class Response:
     """The response to an utterance."""
 
     answer: Intent | None
-    """The reply; None if there is none."""
+    """The reply; None if the agent does not reply."""
     user: Acquaintance
     errand: Callable[[ontology.Memory | None], Awaitable[Response]] | None = None
     """A task that needs memory and runs before the reply. It takes the memory, or None, and returns the final response.
-    If memory fails, it raises nothing and sets ``talk.trouble``."""
+    If memory fails, the task raises no error, and sets ``talk.trouble``."""
     forgotten: bool = False
 
 
@@ -162,7 +162,7 @@ async def _settled(
 
 
 async def _mistaken(user: Acquaintance, memory: ontology.Memory | None, now: float) -> Response:
-    """Stop treating the user as this person, and ask who they are.
+    """Stop treating the user as the person whom the agent took them for, and ask who they are.
 
     If this conversation created the person, remove them from memory.
     """
@@ -218,7 +218,7 @@ def _told(meaning: Meaning, user: Acquaintance, now: float, chance: random.Rando
 
 
 def _without_idle(meaning: Meaning, user: Acquaintance) -> Meaning:
-    """Keep denials that change no fact as free statements: *you are not from Spain*."""
+    """Turn denials that change no fact into free statements: *you are not from Spain*."""
     idle = [fact for fact in meaning.facts if is_idle(fact, user.known)]
     values = [value.lower() for fact in idle for value in fact.values]
     denials = [
@@ -362,8 +362,8 @@ def _struck(meaning: Meaning, user: Acquaintance) -> Response:
 def _unrelated(said: Iterable[Told], values: Sequence[str]) -> tuple[Told, ...]:
     """Leave out the statements about some values, and return the rest.
 
-    A statement is about a value if it contains the value. If no statement contains the whole value, its last word
-    counts: *chess* of *playing chess*.
+    A statement is about a value if it contains the value. If no statement contains the whole value, the value's last
+    word counts: *chess* in *playing chess*.
     """
     said = tuple(said)
     for value in values:

@@ -26,8 +26,8 @@ from .understanding import understand
 from .wording import asking, memorable, stating
 
 HELLO = 3.0
-"""Seconds from the user's first hello to the agent's question for their name. If the user goes on
-talking, the agent does not ask."""
+"""Seconds from the user's first hello to the agent's question for their name. If the user speaks again in this time,
+the agent does not ask."""
 
 T = TypeVar("T")
 
@@ -61,7 +61,7 @@ async def ask(ctx: rs.RuleContext) -> rs.Resign | None:
         ctx[verbaliser.intent] = stating("remind", topic, values, known)
         return None
     if now.moved or (now.busy and now.asked_before):
-        return rs.Resign("the user has just shown a feeling, or joked, or a talk is going on")
+        return rs.Resign("the user has just shown a feeling, joked, or begun another subject")
     wanted = settings.topics if now.turns >= settings.turns else [one for one in settings.topics if one == NAME]
     topic = due(wanted, known, now.closed, now.tries, last=now.last, touched=now.touched, limit=TRIES)
     if not topic:
@@ -93,7 +93,7 @@ async def introduce(ctx: rs.RuleContext) -> rs.Resign | None:
     settings: Settings = ctx.settings
     now = ctx[talk]
     if ctx[who] is not None or NAME not in settings.topics or NAME in now.closed or now.tries.get(NAME):
-        return rs.Resign("the user is known, or was asked")
+        return rs.Resign("the user is known, or was asked for their name already")
     if now.quiet or now.moved or ctx.now - now.spoke < HELLO - 0.1:
         return rs.Resign("the user went on talking, or shows a feeling")
     ctx[talk] = now.asking(NAME, ctx.now)
@@ -108,7 +108,7 @@ async def introduce(ctx: rs.RuleContext) -> rs.Resign | None:
     emits=(reply, noted, forgotten),
 )
 async def listen(ctx: rs.RuleContext) -> None:
-    """Learn what the user tells about themselves, and emit a reply if there is one.
+    """Learn what users say about themselves, and emit a reply if the agent should reply.
 
     The slots change before memory saves anything, because the user may speak again before memory has finished.
     `acknowledge` then puts memory's result into the slots.
@@ -176,13 +176,13 @@ async def respond(ctx: rs.RuleContext) -> None:
 
 @module.rule(when=rawio.output.changed.max_age(None).detached(), writes=talk, background=True)
 async def overhear(ctx: rs.RuleContext) -> rs.Resign | None:
-    """Note that the agent has spoken again after its question. The user's next words may not answer the question.
+    """Note the agent's latest words. The user's next words may answer these words, and not an earlier question.
 
-    They may correct a fact that the agent's words mention.
+    They may also correct a fact that the agent's words mention.
     """
     words: str = ctx.payload(rawio.output.changed)
     if not any(letter.isalpha() for letter in words):
-        return rs.Resign("that was no word")  # for example, an emoji after an answer
+        return rs.Resign("the output has no word")  # for example, an emoji after an answer
     ctx[talk] = ctx[talk].speaking(words)
     return None
 
@@ -209,7 +209,7 @@ async def notice_unheard_question(ctx: rs.RuleContext) -> rs.Resign | None:
 async def welcome(ctx: rs.RuleContext) -> rs.Resign | None:
     """Look up an arriving user in memory. `hibye` greets them; later, in a silence, `ask` mentions a known fact."""
     if len(ctx[interloc.users]) > 1:
-        return rs.Resign("somebody is there already")
+        return rs.Resign("another user is already present")
     before = acquaintance_of(ctx)
     person = person_of((ctx.payload(interloc.users.added) or ctx.payload(interloc.recognised)).item)
     if person is None or before.name == person[NAME]:
@@ -234,7 +234,7 @@ async def part(ctx: rs.RuleContext) -> rs.Resign | None:
     left, known = person_of(ctx.payload(interloc.users.removed).item), ctx[who]
     others = list(ctx[interloc.users].values())
     if len(others) > 1 or (others and (left is None or known is None or left[NAME] != known[NAME])):
-        return rs.Resign("somebody is still there")
+        return rs.Resign("the user, or more than one other user, is still present")
     person = person_of(others[0]) if others else None
     await begin(ctx, Acquaintance(person, {}, Talk(quiet=not others)))
     return None

@@ -37,6 +37,7 @@ class Question:
     turns: int = 0
     """The number of the user's utterances since the question, none of which answered it."""
     heard: bool = False
+    """Whether the agent has said the question."""
     spoken_over: bool = False
     """Whether the agent has said something else since the question. If so, a mere "no" may not answer the question."""
 
@@ -72,11 +73,11 @@ class Talk:
     returns: bool = False
     """Whether the user has talked to the agent before, as far as memory knows."""
     newcomer: bool = False
-    """Whether memory did not know the user."""
+    """Whether the user was new to memory."""
     reminded: bool = False
-    """Whether the agent has shown that it remembers."""
+    """Whether the agent has mentioned that it remembers the user."""
     trouble: str = ""
-    """The last failure of memory; empty while it works."""
+    """The last failure of memory; empty while memory works."""
     warned: bool = False
     """Whether the agent has told the user about the trouble."""
     quiet: bool = False
@@ -104,7 +105,7 @@ class Talk:
     moved: bool = False
     """Whether the user's last utterance shows a feeling or is a joke."""
     busy: bool = False
-    """Whether the user's last utterance asks or tells something that is no fact about them: a talk is going on."""
+    """Whether the user's last utterance asks something, or tells at some length something that persqa does not note."""
 
     @property
     def asked_before(self) -> bool:
@@ -149,7 +150,7 @@ class Talk:
         return told.mentioning(last, latest)
 
     def striking(self, gone: Mapping[str, tuple[str, ...]]) -> Talk:
-        """Remove values by topic, and do not ask about these topics again."""
+        """Remove the values in `gone`, and do not ask about their topics again."""
         remembered = {
             topic: tuple(value for value in values if value not in gone.get(topic, ()))
             for topic, values in self.remembered.items()

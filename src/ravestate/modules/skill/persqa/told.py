@@ -85,7 +85,8 @@ class Told:
 def told_in(reader: Reader, before: Sequence[Told] = ()) -> tuple[list[Told], list[Told]]:
     """Return the free statements of an utterance, and all its statements.
 
-    In both, the subject is a name where possible: of the person named last for *he*, of the known sister for *my sister*.
+    In both lists, a name replaces the subject where possible. *He* becomes the person named last, and *my sister*
+    becomes the known sister.
     """
     free: list[Told] = []
     heard: list[Told] = []
@@ -199,7 +200,7 @@ def recalled(reader: Reader, told: Iterable[Told], known: Facts) -> list[Told]:
 def _naming(told: Sequence[Told]) -> list[Told]:
     """Return the statements that name the people they are about, the last one for each subject.
 
-    Statements that say nothing but a name come before others: *my neighbour is Karl*, *my neighbour Karl plays the drums*.
+    Statements that only give a name take precedence: *my neighbour is Karl* over *my neighbour Karl plays the drums*.
     """
     only = [one for one in told if one.verb in ("be", "be called", "be named") and _has_name(one.object)]
     beside = [one for one in told if _has_name(one.who)]
@@ -207,7 +208,7 @@ def _naming(told: Sequence[Told]) -> list[Told]:
 
 
 def _has_name(words: str) -> bool:
-    """Return whether one of some words is a name, also in lower case."""
+    """Return whether any of the words is a name, even in lower case."""
     lexicon = loaded_lexicon()
     return any(word[:1].isupper() or (lexicon and lexicon.name(word) != word) for word in words.split())
 
@@ -332,7 +333,7 @@ def _retold(reader: Reader, said: nlp.Statement) -> str:
 
 
 def _verb(reader: Reader, said: nlp.Statement) -> Word | None:
-    """Return the verb of a statement: of several with the same lemma, the one with the statement's subject."""
+    """Return the verb of a statement. If several verbs have its lemma, take the verb with the statement's subject."""
     tree, words = reader.tree, said.subject.text.lower().split()
     for word in tree.words if words else ():
         if word.lemma == said.verb and words[-1] in {part.low for part in tree.children(word, *SUBJECTS)}:
@@ -341,7 +342,7 @@ def _verb(reader: Reader, said: nlp.Statement) -> Word | None:
 
 
 def _is_before(tree: Tree, clause: Word, top: Word) -> bool:
-    """Return whether a clause is a sentence of its own before another: *her name is Ida*, she plays the harp."""
+    """Return whether a clause is really an earlier sentence: *her name is Ida*, in *her name is Ida, she sings*."""
     return clause.dep == "ccomp" and clause.index < top.index and bool(tree.children(clause, *SUBJECTS))
 
 

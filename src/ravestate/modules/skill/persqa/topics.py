@@ -1,4 +1,4 @@
-"""The topics: one table of all that the agent may know about a person."""
+"""The topics: one table of everything that the agent can know about a person."""
 
 from __future__ import annotations
 
@@ -18,7 +18,7 @@ Kind = Literal["name", "place", "activity", "work", "organisation", "subject", "
 
 @dataclass(frozen=True, slots=True)
 class Topic:
-    """Something to know about a person: a row of `topics.yaml`. That file explains its columns."""
+    """Something to know about a person: a row of ``topics.yaml``. That file explains the columns."""
 
     name: str
     """The topic's name. In a phrase, a parameter of this name stands for the values."""
@@ -73,9 +73,12 @@ _ROWS = TypeAdapter(list[Topic]).validate_python([{"name": name, **row} for name
 TOPICS: Mapping[str, Topic] = _Topics((topic.name, topic) for topic in _ROWS)
 """All topics by name, in the order in which the agent asks about them."""
 ASKED = tuple(topic.name for topic in _ROWS if topic.asked)
+"""The topics that the agent asks about, in this order."""
 WORDS = {name: frozenset(words) for name, words in cast("dict[str, list[str]]", _TABLE).items()}
+"""Name of a list of words in ``topics.yaml`` → its words."""
 NOUNS = {noun: topic.name for topic in _ROWS for noun in topic.nouns}
 SAYS = {phrase.rstrip("~"): (topic.name, not phrase.endswith("~")) for topic in _ROWS for phrase in topic.says}
+"""Words before a value → the topic, and whether any value fits (or only a value of the topic's kind)."""
 ENDS = {phrase: topic.name for topic in _ROWS for phrase in topic.ends}
 ASKS = {phrase: topic.name for topic in _ROWS for phrase in topic.asks}
 

@@ -25,7 +25,7 @@ from .values import value_of
 from .wording import Facts, among
 
 EVERYTHING = "everything"
-"""The value of `Meaning.topic` that stands for all topics."""
+"""The value of `Fact.topic` that stands for all topics."""
 
 BRIEF = 4
 """The maximum number of words of an utterance after which the agent may ask about something else."""
@@ -84,7 +84,7 @@ class Meaning:
 def understand(
     seen: nlp.Analysis, talk: Talk, known: Facts, now: float, within: float, told: Iterable[Told] = ()
 ) -> Meaning:
-    """Return the meaning of an utterance at `now`. A question of the agent waits `within` seconds for its answer."""
+    """Return the meaning of an utterance at `now`. The agent's question waits `within` seconds for an answer."""
     hearing = _Hearing(seen, talk, known, now, within, tuple(told))
     touched = touched_by([word.lemma for word in seen.tree.words])
     relatives = [phrase.head for said in seen.statements for phrase in (said.subject, said.object) if phrase.of("I")]
@@ -183,7 +183,7 @@ class _Hearing:
         return self.otherwise(aside)
 
     def otherwise(self, aside: bool) -> Meaning:
-        """Return the meaning of an utterance that tells nothing in a sentence; `aside` if it asks, or says goodbye."""
+        """Return the meaning of an utterance that states no fact; `aside` says whether it asks, or says goodbye."""
         seen, topic, asks = self.seen, self.topic, self.seen.question is not None
         if identity := self.identity():
             return identity
@@ -209,7 +209,7 @@ class _Hearing:
         return all(among(value, self.known.get(NAME, ())) for value in values)
 
     def denies_name(self) -> bool:
-        """Return whether the user says that they are not the person as whom the agent knows them."""
+        """Return whether the user says that they are not the person that the agent takes them for."""
         names = self.known.get(NAME, ())
         unsaid = any(said.negated and said.verb == "say" for said in self.seen.statements)  # "I never said I was Ada"
         denials = [
@@ -324,7 +324,7 @@ class _Hearing:
         return None
 
     def pointed(self) -> str:
-        """Return the topic of *and my job?* and of *what was his name?*: of the one whom the pronoun may mean."""
+        """Return the topic of *and my job?*, or of the relative whom the pronoun in *what was his name?* may mean."""
         if found := _ELLIPSIS.match(self.text):
             topic = NOUNS.get(found[1].lower(), "")
             return topic if self.known.get(topic) else ""
@@ -390,9 +390,9 @@ _FEMALE, _MALE = ("mother", "sister", "wife", "daughter"), ("father", "brother",
 _OTHERS = {"his": _FEMALE, "her": _MALE, "its": (*_FEMALE, *_MALE, "friend", "partner", "child")}
 """A pronoun → topics of people whom it cannot mean."""
 _NAMING = frozenset(["i", "me", "name", "call", "called"])
-"""Words of which at least one stands beside a user's name, unless it is all that they say: *it's Ada*."""
+"""Words that introduce the user's name. Without one of these words, *it's Leipzig* may be about something else."""
 _CALM = frozenset(["astonishing", "boredom", "compliment", "insult"])
 """Feelings that do not stop the agent from asking its next question."""
 _NAMES = frozenset(["be", "call", "name"])
 _NAMED = frozenset(["i", "me", "my name", "it", "this", "that", "you", "they"])
-"""The other side of a denied name: *I am not Ada*, *Ada is not my name*, *don't call me Ada*."""
+"""Words on the other side of a denied name: *I am not Ada*, *Ada is not my name*, *don't call me Ada*."""

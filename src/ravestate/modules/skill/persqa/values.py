@@ -16,12 +16,13 @@ _CLOSED = frozenset(["PRON", "DET", "AUX", "SCONJ", "CCONJ", "PART", "ADV", "INT
 _PLACES = frozenset(["GPE", "LOC", "FAC", "NORP"])
 _TIMES = frozenset(["DATE", "TIME"])
 LONGEST = {"name": 4, "people": 4, "place": 5}
+"""Kind → the maximum number of words of a value; 7 for other kinds."""
 _LEADS = {
     **dict.fromkeys(("subject", "activity", "thing"), r"an? (?=\S)"),
     "work": r"(?:an?|the) (?=\S)",
     "place": r"(?:the )?(?:city|town|village) of (?=\S)|.*\b(?:called|named) (?=\S)",
 }
-"""Words that stand before a value and do not belong to it."""
+"""Words that stand before a value and do not belong to the value."""
 _ANYTHING = re.compile(r"(?:any|some|every|no)(?:thing|one|body|where)\b", re.IGNORECASE)
 _DEICTIC = re.compile(
     r"(?:this|that|these|those|it|you|him|her|them|me|us|my|your|here|there|more|most|a|many|much|"
@@ -150,7 +151,7 @@ def _trimmed(text: str) -> str:
 
 
 def is_gerund(text: str) -> bool:
-    """Return whether a text begins with an activity: *sailing*, *rock climbing*, but not *spring*."""
+    """Return whether a text begins with an activity in *-ing*: *sailing*, *rock climbing*, but not *spring*."""
     return bool(re.match(r"(?:\w+ )?\w{3,}ing\b", text)) and likeness(text, "activity") > -0.2
 
 

@@ -78,7 +78,7 @@ def alike(value: str, others: Iterable[str]) -> bool:
 
 
 def mentioned(text: str, known: Facts) -> str:
-    """Return the topic of the fact that words of the agent mention to the user; empty if they mention none, or several.
+    """Return the topic of the user's fact that the agent's words mention; empty if they mention none, or several.
 
     Example:
         >>> mentioned("How do you like Ulm?", {"home": ("Ulm",), "age": ("36",)})
@@ -165,5 +165,5 @@ def stating(intent: str, topic: str, values: tuple[str, ...], known: Facts) -> I
 
 
 def memorable(remembered: Facts, chance: random.Random) -> str:
-    """Return a random topic whose values are remembered."""
+    """Return a random topic among those with remembered values."""
     return chance.choice([topic for topic, values in remembered.items() if values])
