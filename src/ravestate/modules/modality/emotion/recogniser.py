@@ -27,7 +27,8 @@ SHARED: Mapping[str, Feeling] = {
 feeling."""
 
 SPOILERS = frozenset({"failure", "anger", "worry"})
-"""If a text has a sentence of these classes, joy does not count: "I got my results, and I failed"."""
+"""Classes of sentences beside which the classes of `SPOILED` do not count: "I got my results, and I failed"."""
+SPOILED = frozenset({"joy", "affection", "astonishing"})
 
 PICTURES: tuple[tuple[Feeling, re.Pattern[str]], ...] = (
     ("affectionate", re.compile("[❤💕💖💗💓💞💘💝💙💚💛💜🧡🤍🥰😍😘😚🤗🫂]|<3")),
@@ -55,10 +56,9 @@ def recognise(text: str, names: Collection[str] = ()) -> Feeling | None:
     if not all(matcher.match_exactly(addressed(sentence, names)) for sentence in said):
         matcher.load()
     found = feelings(said, names)
-    if not SPOILERS.isdisjoint(found):
-        found.pop("joy", None)
+    spoilt = SPOILED if not SPOILERS.isdisjoint(found) else frozenset[str]()
     for name, feeling in SHARED.items():
-        if name in found:
+        if name in found and name not in spoilt:
             return feeling
     return next((feeling for feeling, picture in PICTURES if picture.search(text[:LONGEST])), None)
 

@@ -27,6 +27,8 @@ from .wording import Facts, among
 EVERYTHING = "everything"
 """The value of `Fact.topic` that stands for all topics."""
 
+SURELY = 0.7
+"""The minimum confidence that a sentence beside others says who the user is."""
 BRIEF = 4
 """The maximum number of words of an utterance after which the agent may ask about something else."""
 
@@ -295,6 +297,8 @@ class _Hearing:
         )  # "my name is..., who am I talking to"
         match = self.seen.act("identify")
         if other or match is None or match.text.endswith("?"):  # "me?"
+            return None
+        if len(self.seen.sentences) > 1 and match.score < SURELY:  # "Pete. I'd shout his name from the kitchen."
             return None
         return Meaning("identified", leave=self.leave, aloud=not self.leave)
 

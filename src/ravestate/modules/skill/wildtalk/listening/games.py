@@ -157,8 +157,8 @@ class Turn:
     def _riddle(self, game: Game) -> Played | None:
         riddle = self._riddle_of(game)
         answer, over, seen, lemmas = riddle["answers"][0], Game("riddle"), self._seen, self._lemmas()
-        if lemmas.intersection(riddle["answers"]):
-            return self._say("riddle", "right", over, answer=answer)
+        if right := [one for one in riddle["answers"] if one in lemmas]:  # a riddle may have several
+            return self._say("riddle", "right", over, answer=right[0])
         if self._unsure or self._no or lemmas & {"give", "tell", "know"}:
             return self._say("riddle", "tell", over, answer=answer, Answer=answer.capitalize())
         if seen is not None and seen.question is not None and len(self._words) > 4:

@@ -255,7 +255,10 @@ def _tone(seen: Analysis, moves: Sequence[str], feeling: Moment | None) -> str:
     """Return the tone of an utterance that is not grave."""
     if feeling is not None and feeling.tone:
         return feeling.tone
-    return tone_of(seen.text) or ("glad" if moves == ("rejoice",) and not may_be_dark(seen.text) else "")
+    tone = tone_of(seen.text)
+    if tone == "glad" and moves and "rejoice" not in moves:
+        return ""  # "we tried everything": the classifier of tones alone is too often wrong
+    return tone or ("glad" if moves == ("rejoice",) and not may_be_dark(seen.text) else "")
 
 
 def _leaves(seen: Analysis) -> bool:

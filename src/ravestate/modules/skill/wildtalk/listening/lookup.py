@@ -33,6 +33,8 @@ LONG, LONGER = 10, 0.75
 entry answers. In 170 judgements of such utterances, half of the replies that were called probable were bad."""
 CROSSED = 0.5
 """The share of its probability that an entry loses if its mood, its kind of question or its persons do not suit."""
+CHEERFUL = 0.4
+"""The share of its probability that a glad entry keeps in a sad, angry or tired conversation."""
 DARKLY = 0.5
 """The minimum probability of suiting at which a sad entry of the bank marks an utterance as dark (sad or grave)."""
 LEADING = 0.1
@@ -75,16 +77,19 @@ def near_in(
     ranked: list[Found] = []
     found = phrases.bank.similar(texts, seen.text, roughly=roughly)
     if being is not None and (meant := spelled_out(seen, being)):  # "he is in hospital" after "my dad"
-        found += phrases.bank.similar([meant], meant, roughly=roughly)
+        before = set(phrases.bank.thread(state.moment or state.thread))  # the being comes from there
+        found += [one for one in phrases.bank.similar([meant], meant, roughly=roughly) if one.moment.name not in before]
     for one in found:
         tone = one.moment.tone
-        crossed = (tone == "glad" and mood in DARK) or (tone in DARK and mood == "glad")
+        cheerful = tone == "glad" and mood in DARK
+        crossed = tone in DARK and mood == "glad"
         crossed = crossed or (grave and tone not in DARK and one.score < CLOSE)
         examples = one.moment.examples
         crossed = crossed or (one.fit < 1 and kind != "" and kind not in map(kind_of, examples))
         crossed = crossed or bool(bare and one.score < CLOSE and len(asking.split()) <= BRIEFLY)
         crossed = crossed or (persons == (False, True) and all(persons_in(text) == (True, False) for text in examples))
         share = LONGER if len(seen.tree.words) >= LONG and one.score < CLOSE else 1.0
+        share *= CHEERFUL if cheerful else 1.0
         ranked.append(replace(one, fit=one.fit * share * (1 - CROSSED * crossed)))
     return sorted(ranked, key=lambda one: -one.fit - LEADING * bool(one.moment.follows))
 
