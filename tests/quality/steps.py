@@ -1,0 +1,164 @@
+"""Measure single steps of understanding: the normal form, sums, follow-ups, moves of a game, and the like.
+
+For each set, a function of the same name takes a sentence, and returns its label. A sentence can begin with its situation
+in brackets: ``[asked] yes``. The modules were developed with most of these sentences, so the sets only show that a module
+gets no worse. What must hold for every sentence is a test of the module.
+"""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Callable
+from datetime import date, time
+from typing import Any, cast
+
+from quality import measure
+from quality.modules import _seen, prepare
+from quality.skills import _load
+from ravestate.language.addressing import addressed
+from ravestate.language.lexicon import load_lexicon
+from ravestate.language.moves import bundled_moves
+from ravestate.language.normal import normalise
+from ravestate.modules.meta.nlp.introduction import introductions_in
+from ravestate.modules.modality.visionio.wishes import wish_of
+from ravestate.modules.skill.charades import understanding as charades
+from ravestate.modules.skill.charades.game import moves_of
+from ravestate.modules.skill.genqa.answering import Answer
+from ravestate.modules.skill.genqa.question import parse
+from ravestate.modules.skill.genqa.reckoning import Unanswerable, reckon, scaled
+from ravestate.modules.skill.genqa.thread import readings, turn_of
+from ravestate.modules.skill.persqa.reading import Reader
+from ravestate.modules.skill.persqa.recollection import asks_for_words, recollect
+from ravestate.modules.skill.persqa.told import Told, recalled, told_in
+from ravestate.modules.skill.wildtalk.listening.echo import told_in as statements_in
+from ravestate.modules.skill.wildtalk.listening.material import material
+from ravestate.modules.skill.wildtalk.listening.repair import repair_in
+from ravestate.modules.skill.wildtalk.listening.state import State
+
+_SITUATION = re.compile(r"(?:\[([^\]]*)\] )?(.*)")
+_TODAY = date(2026, 6, 1)
+
+
+def _parts(sentence: str) -> tuple[str, str]:
+    """Return the situation of a sentence (empty if there is none), and the sentence without it."""
+    found = _SITUATION.fullmatch(sentence)
+    assert found is not None
+    return found[1] or "", found[2]
+
+
+def written_rows(sentence: str) -> str:
+    """Return the normal form of a typed sentence."""
+    assert load_lexicon() is not None
+    return normalise(sentence).text
+
+
+def addressed_rows(sentence: str) -> str:
+    """Return a sentence in which *you* stands for the agent's name, Robin."""
+    return addressed(sentence, ["Robin"])
+
+
+def closing_rows(sentence: str) -> str:
+    """Return the question that ends an utterance, after the kind of the words before it."""
+    found = _seen(sentence).closing
+    if found is None:
+        return measure.NONE
+    return f"{'returned' if found.returned else 'remark' if found.remarks else 'told'}: {found.text}"
+
+
+def introductions_rows(sentence: str) -> str:
+    """Return the words in the place of the user's name, and what else the user says, if the name is sure."""
+    seen = _seen(sentence)
+    if (found := seen.introduction) is not None:
+        return f"{found.name} / {found.rest}"
+    return next((found.name for found in introductions_in(seen.tree)), measure.NONE)
+
+
+def sums_rows(sentence: str) -> str:
+    """Return the result of a sum. Its situation is the time of day (``at 14:50``), or the last answers."""
+    situation, text = _parts(sentence)
+    now = time.fromisoformat(situation.removeprefix("at ")) if situation.startswith("at ") else None
+    told = [] if now else [one for one in situation.split(" | ") if one]
+    try:
+        return reckon(text, told, _TODAY, now=now) or scaled(text) or measure.NONE
+    except Unanswerable:
+        return "refused"
+
+
+def readings_rows(sentence: str) -> list[str]:
+    """Return all readings of a follow-up. Its situation has the earlier questions: ``question = answer = title``."""
+    situation, text = _parts(sentence)
+    said = [one.split(" = ") for one in situation.split(" | ")]
+    turns = [turn_of(parse(question), Answer(question, answer, "s", title), 0.0) for question, answer, title in said]
+    return [reading.text for reading in readings(parse(text), turns)]
+
+
+def recalled_rows(sentence: str) -> str:
+    """Return the statements that answer a question of the user. Its situation has the user's earlier sentences."""
+    situation, text = _parts(sentence)
+    said: list[Told] = []
+    sentences = situation.split(" | ")
+    for one in sentences:
+        said += told_in(Reader(_seen(one)), said)[1]
+    seen = _seen(text)
+    known = " | ".join(one.text for one in recalled(Reader(seen), said, {}))
+    return known or (recollect(text, sentences) if asks_for_words(seen) else "") or measure.NONE
+
+
+def moved_rows(sentence: str) -> str:
+    """Return the move that an utterance makes in the game of charades. Its situation is the step of the game."""
+    step, text = _parts(sentence)
+    move = charades.understand(_seen(text), moves_of(cast("Any", step)))
+    return measure.NONE if move is None else f"{move.kind} {move.name}".strip()
+
+
+def turned_rows(sentence: str) -> str:
+    """Return a statement from the agent's view, the person of its subject, and its tense."""
+    found = max(statements_in(_seen(sentence), material().living), key=lambda one: one.start, default=None)
+    return f"{found.echo} / {found.subject} / {found.tense}" if found is not None and found.echo else measure.NONE
+
+
+def repairs_rows(sentence: str) -> str:
+    """Return how a user objects to the agent's last answer. The situation is their utterance before it, and the answer."""
+    situation, text = _parts(sentence)
+    before, said = situation.split(" | ")
+    found = repair_in(_seen(text), State(said=(said,), before=before))
+    return measure.NONE if found is None else f"{found.kind}: {found.again.lower().rstrip('.')}".rstrip(": ")
+
+
+def wishes_rows(sentence: str) -> str:
+    """Return whether the user wants the agent to remember or forget their face."""
+    return wish_of(sentence) or measure.NONE
+
+
+SETS: dict[str, Callable[[str], str | list[str]]] = {
+    function.__name__: function
+    for function in (
+        written_rows, addressed_rows, closing_rows, introductions_rows, sums_rows, readings_rows, recalled_rows, moved_rows,
+        turned_rows, repairs_rows, wishes_rows,
+    )
+}  # fmt: skip
+FLOORS = dict.fromkeys(SETS, 0.95)
+"""The minimum share of right labels. Every share is 1 today; one or two misses are allowed in most sets."""
+
+
+def result(name: str) -> measure.Result:
+    """Measure the set `name`. If a step has several results, one of them must be the label."""
+    _load()
+    charades.load()
+    bundled_moves().load()
+    cases = measure.labelled(name)
+    labels = dict(cases)
+    prepare(_parts(text)[1] for text, _ in cases)
+
+    def see(text: str) -> str:
+        found = SETS[name](text)
+        if isinstance(found, str):
+            return found
+        return labels[text] if labels[text] in found else " | ".join(found)
+
+    return measure.measure_labels(name, see, cases)
+
+
+def results() -> list[measure.Result]:
+    """Measure every set of this file."""
+    return [result(name) for name in SETS]
