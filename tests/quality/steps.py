@@ -25,7 +25,7 @@ from ravestate.modules.skill.charades import understanding as charades
 from ravestate.modules.skill.charades.game import moves_of
 from ravestate.modules.skill.genqa.answering import Answer
 from ravestate.modules.skill.genqa.question import parse
-from ravestate.modules.skill.genqa.reckoning import Unanswerable, reckon, scaled
+from ravestate.modules.skill.genqa.reckoning import reckon, scaled
 from ravestate.modules.skill.genqa.thread import readings, turn_of
 from ravestate.modules.skill.persqa.reading import Reader
 from ravestate.modules.skill.persqa.recollection import asks_for_words, recollect
@@ -78,10 +78,7 @@ def sums_rows(sentence: str) -> str:
     situation, text = _parts(sentence)
     now = time.fromisoformat(situation.removeprefix("at ")) if situation.startswith("at ") else None
     told = [] if now else [one for one in situation.split(" | ") if one]
-    try:
-        return reckon(text, told, _TODAY, now=now) or scaled(text) or measure.NONE
-    except Unanswerable:
-        return "refused"
+    return reckon(text, told, _TODAY, now=now) or scaled(text) or measure.NONE
 
 
 def readings_rows(sentence: str) -> list[str]:
