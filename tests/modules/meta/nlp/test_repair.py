@@ -85,7 +85,6 @@ def test_contrasts_are_found_in_texts_without_a_verb_as_well(
 
 
 @given(st.lists(st.sampled_from(WORDS)))
-)
 @example(["dog", ","]).via("a comma with nothing after it")
 @example(["that", "'s", "misty", "outside", ",", "not", "sunny"]).via("once a tree with a circle")
 @settings(max_examples=200, deadline=None)
