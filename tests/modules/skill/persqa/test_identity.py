@@ -117,10 +117,7 @@ def test_a_user_can_say_that_the_agent_takes_them_for_another_person(ada: Path, 
     assert "works_as" not in people["Ada"] and people["Emma"] == {"works_as": ["baker"]}
 
 
-@pytest.mark.parametrize(
-    "text",
-    ["I am not Ada, that is not me", "I'm not Ada", "you are wrong, I'm not Ada", "my name isn't Ada", "Ada is not my name", "don't call me Ada"],
-)  # fmt: skip
+@pytest.mark.parametrize("text", ["I'm not Ada", "my name isn't Ada"])
 def test_a_denied_name_is_asked_again_and_leaves_no_person(file: Path, look: Look, text: str) -> None:
     with agent(file) as sim:
         sim.say("my name is ada")
@@ -129,14 +126,6 @@ def test_a_denied_name_is_asked_again_and_leaves_no_person(file: Path, look: Loo
         sim.say("ida")
         assert name_of(sim) == "Ida"
     assert list(look()) == ["Ida"]
-
-
-@pytest.mark.parametrize("text", ["I'm not tired", "my sister is not Ada", "I am not Bob"])
-def test_a_denial_of_something_else_leaves_the_name(file: Path, text: str) -> None:
-    with agent(file) as sim:
-        sim.say("my name is ada")
-        sim.say(text)
-        assert name_of(sim) == "Ada"
 
 
 def test_the_name_is_asked_after_the_first_hello_once(file: Path) -> None:

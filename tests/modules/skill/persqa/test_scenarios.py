@@ -923,31 +923,6 @@ def test_nothing_heavy_is_imported_with_the_module() -> None:
     assert done.stdout == "False False\n"
 
 
-@pytest.mark.parametrize(
-    ("text", "name"),
-    [
-        ("Hello! Greta here, the loudest woman of the village", "Greta"),
-        ("im jasmin btw", "Jasmin"),
-        ("Good evening. I am Li Wenyan, mining engineer", "Li Wenyan"),
-        ("im karl. no wait im claudia", "Claudia"),
-        ("my name is marlies", "Marlies"),
-    ],
-)
-def test_a_name_is_heard_beside_other_words(text: str, name: str) -> None:
-    with agent(None) as sim:
-        sim.say(text)
-        node = sim.read(persqa.who)
-        assert node is not None and node["name"] == name
-
-
-@pytest.mark.parametrize("text", ["nobody here", "he's called Jonathan and he plays the harp", "I'm lost here"])
-def test_words_that_are_not_the_users_name_are_not_taken_for_it(file: Path, text: str) -> None:
-    with agent(file) as sim:
-        assert asked(sim) == "name"
-        sim.say(text)
-        assert sim.read(persqa.who) is None
-
-
 @pytest.mark.parametrize("text", ["nobody rang today either...", "I'm afraid of her face when I say it."])
 def test_sorrow_is_not_taken_for_a_refusal(file: Path, text: str) -> None:
     with agent(file) as sim:
