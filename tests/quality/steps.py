@@ -7,6 +7,7 @@ gets no worse. What must hold for every sentence is a test of the module.
 
 from __future__ import annotations
 
+import random
 import re
 from collections.abc import Callable
 from datetime import date, time
@@ -14,12 +15,14 @@ from typing import Any, cast
 
 from quality import measure
 from quality.modules import _seen, prepare
-from quality.skills import _load
+from quality.skills import _listener, _load
 from ravestate.language.addressing import addressed
 from ravestate.language.lexicon import load_lexicon
 from ravestate.language.moves import bundled_moves
+from ravestate.language.nonsense import is_nonsense
 from ravestate.language.normal import normalise
 from ravestate.modules.meta.nlp.introduction import introductions_in
+from ravestate.modules.meta.nlp.pipeline import pipeline
 from ravestate.modules.modality.visionio.wishes import wish_of
 from ravestate.modules.skill.charades import understanding as charades
 from ravestate.modules.skill.charades.game import moves_of
@@ -29,13 +32,19 @@ from ravestate.modules.skill.genqa.reckoning import reckon, scaled
 from ravestate.modules.skill.genqa.thread import readings, turn_of
 from ravestate.modules.skill.persqa.reading import Reader
 from ravestate.modules.skill.persqa.told import Told, recalled, told_in
+from ravestate.modules.skill.wildtalk.gate import Gate
+from ravestate.modules.skill.wildtalk.listening import Heard
 from ravestate.modules.skill.wildtalk.listening.echo import told_in as statements_in
 from ravestate.modules.skill.wildtalk.listening.material import material
 from ravestate.modules.skill.wildtalk.listening.repair import repair_in
 from ravestate.modules.skill.wildtalk.listening.state import State
+from ravestate.modules.skill.wildtalk.listening.taking_up import taken_from
+from ravestate.modules.skill.wildtalk.listening.tongue import tongue_of
 
 _SITUATION = re.compile(r"(?:\[([^\]]*)\] )?(.*)")
 _TODAY = date(2026, 6, 1)
+_KNOWN = {"home": ("Hannover",), "name": ("Marlene",), "sister": ("Rosa",), "age": ("33",)}
+"""What memory knows of the user, for `refused_rows`."""
 
 
 def _parts(sentence: str) -> tuple[str, str]:
@@ -118,6 +127,29 @@ def repairs_rows(sentence: str) -> str:
     return measure.NONE if found is None else f"{found.kind}: {found.again.lower().rstrip('.')}".rstrip(": ")
 
 
+def refused_rows(sentence: str) -> str:
+    """Return why the agent must not say a sentence of a model. Its situation is the user's utterance."""
+    situation, text = _parts(sentence)
+    return Gate("Ravestate", situation, known=_KNOWN, pipeline=pipeline("")).refuse(text) or measure.NONE
+
+
+def moments_rows(sentence: str) -> str:
+    """Return the situation that the listener finds in an utterance at the beginning of a conversation."""
+    state = _listener().answer(Heard(sentence, _seen(sentence)), State(), random.Random(0)).state
+    return state.moment or measure.NONE
+
+
+def highlights_rows(sentence: str) -> str:
+    """Return the phrase of an utterance that says most, and the tense of its statement."""
+    found = taken_from(_seen(sentence), material().living, "")
+    return f"{found.highlight} / {found.told.tense}" if found is not None and found.highlight else measure.NONE
+
+
+def tongues_rows(sentence: str) -> str:
+    """Return the language of an utterance that is not English, or ``nonsense``."""
+    return tongue_of(sentence, material().tongues) or ("nonsense" if is_nonsense(sentence) else measure.NONE)
+
+
 def wishes_rows(sentence: str) -> str:
     """Return whether the user wants the agent to remember or forget their face."""
     return wish_of(sentence) or measure.NONE
@@ -127,10 +159,10 @@ SETS: dict[str, Callable[[str], str | list[str]]] = {
     function.__name__: function
     for function in (
         written_rows, addressed_rows, closing_rows, introductions_rows, sums_rows, readings_rows, recalled_rows, moved_rows,
-        turned_rows, repairs_rows, wishes_rows,
+        turned_rows, repairs_rows, refused_rows, moments_rows, highlights_rows, tongues_rows, wishes_rows,
     )
 }  # fmt: skip
-FLOORS = dict.fromkeys(SETS, 0.95) | {"repairs_rows": 0.9}
+FLOORS = {name: 0.95 if len(measure.labelled(name)) > 20 else 0.9 for name in SETS}
 """The minimum share of right labels. Today, almost every sentence of these sets is understood."""
 
 

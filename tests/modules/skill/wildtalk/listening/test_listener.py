@@ -172,21 +172,9 @@ def test_a_sentence_that_breaks_off_gets_time(talk: Any) -> None:
     assert talk.say("hold on my") in broken
 
 
-@pytest.mark.parametrize(
-    ("text", "moment"),
-    [
-        ("is there a neural network inside of you?", "has_language_model"),
-        ("are you just a script?", "is_scripted"),
-        ("did that make you laugh?", "can_you_laugh"),
-        ("are you storing everything I say?", "keeps_everything"),
-        ("woohoo!!!", "cheer"),
-        ("you might ask how my day was", "ask_my_day"),
-        ("why are you so sorry, she is fine", "your_mistake_hurts"),
-    ],
-)
-def test_it_reacts_to_words_about_itself_and_the_talk(text: str, moment: str, talk: Any) -> None:
-    said = talk.say(text)
-    assert said in {line.text for line in lines_of(material().moments[moment])}
+def test_an_answer_is_one_of_the_lines_of_its_situation(talk: Any) -> None:
+    said = talk.say("did that make you laugh?")
+    assert said in {line.text for line in lines_of(material().moments[talk.state.moment])}
 
 
 def test_a_sad_sentence_outweighs_a_farewell_that_it_resembles(talk: Any) -> None:
