@@ -35,6 +35,7 @@ from ravestate.modules.skill.persqa.told import Told, recalled, told_in
 from ravestate.modules.skill.wildtalk.gate import Gate
 from ravestate.modules.skill.wildtalk.listening import Heard
 from ravestate.modules.skill.wildtalk.listening.echo import told_in as statements_in
+from ravestate.modules.skill.wildtalk.listening.hearing import hear
 from ravestate.modules.skill.wildtalk.listening.material import material
 from ravestate.modules.skill.wildtalk.listening.repair import repair_in
 from ravestate.modules.skill.wildtalk.listening.state import State
@@ -139,6 +140,13 @@ def moments_rows(sentence: str) -> str:
     return state.moment or measure.NONE
 
 
+def asked_rows(sentence: str) -> str:
+    """Return the kind of a question that asks for no fact, and the area of life that it is about."""
+    asked = hear(material(), Heard(sentence, _seen(sentence)), State()).asked
+    parts = () if asked is None else (asked.kind, asked.area.name if asked.area else "")
+    return " / ".join(filter(None, parts)) or measure.NONE
+
+
 def highlights_rows(sentence: str) -> str:
     """Return the phrase of an utterance that says most, and the tense of its statement."""
     found = taken_from(_seen(sentence), material().living, "")
@@ -159,7 +167,7 @@ SETS: dict[str, Callable[[str], str | list[str]]] = {
     function.__name__: function
     for function in (
         written_rows, addressed_rows, closing_rows, introductions_rows, sums_rows, readings_rows, recalled_rows, moved_rows,
-        turned_rows, repairs_rows, refused_rows, moments_rows, highlights_rows, tongues_rows, wishes_rows,
+        turned_rows, repairs_rows, refused_rows, moments_rows, asked_rows, highlights_rows, tongues_rows, wishes_rows,
     )
 }  # fmt: skip
 FLOORS = {name: 0.95 if len(measure.labelled(name)) > 20 else 0.9 for name in SETS}

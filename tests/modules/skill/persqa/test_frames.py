@@ -11,7 +11,7 @@ from quality.blind import stored
     ("frame", "topic"), [("I am passionate about {}", "liking"), ("I was hired by {}", "employer"), ("I entered this world in {}", "birthplace")]
 )  # fmt: skip
 def test_the_words_around_a_value_show_its_topic(frame: str, topic: str) -> None:
-    for value in {"liking": ("jazz", "opera"), "employer": ("the railway", "Bosch"), "birthplace": ("Sousse", "Ulm")}[
+    for value in {"liking": ("jazz", "films"), "employer": ("the railway", "Bosch"), "birthplace": ("Sousse", "Ulm")}[
         topic
     ]:
         assert f"{topic}={value}".lower() in stored(frame.format(value))

@@ -21,15 +21,19 @@ def gate(heard: str = "I moved house last week.", said: tuple[str, ...] = ()) ->
     ("sentence", "reason"),
     [
         ("Look at {} for more.", "a link"),
-        ("{}: I moved house.", "the mark of a speaker"),
+        ("User: {} is a house.", "the mark of a speaker"),
         ("<b>{}</b> is a nice house.", "markup or code"),
         ("{} h\ufffduse.", "junk"),
-        ("My name is {}.", "a wrong name"),
     ],
 )
 def test_the_gate_refuses_what_no_agent_may_say(sentence: str, reason: str) -> None:
-    for word in ("www.example.org", "https://example.org") if reason == "a link" else ("User", "Ravestate"):
+    for word in ("www.example.org", "https://example.org") if reason == "a link" else ("This", "Ravestate"):
         assert gate().refuse(sentence.format(word)) == reason
+
+
+def test_a_sentence_in_which_the_agent_has_another_name_is_refused() -> None:
+    assert [gate().refuse(f"My name is {name}.") for name in ("Marlene", "Tom")] == ["a wrong name", "a wrong name"]
+    assert gate("What is your name?").refuse("My name is Ravestate.") == ""
 
 
 @pytest.mark.parametrize(

@@ -9,6 +9,7 @@ from typing import Any
 
 import pytest
 
+from quality.measure import labelled
 from ravestate.language.examples import bundled
 from ravestate.language.matcher import bundled_matcher
 from ravestate.modules.skill.wildtalk.listening import Heard, State
@@ -277,26 +278,14 @@ def test_the_answer_to_an_unknown_fact_names_its_subject(text: str, named: str, 
     assert all(named in begin(seed).say(text).lower() for seed in range(4))
 
 
-@pytest.mark.parametrize(
-    ("text", "kind", "area"),
-    [
-        ("what should I cook for my aunt", "recommend", "food"),
-        ("how can I get fitter for the race", "how_to", "sport"),
-        ("is it wrong to miss her still", "okay", "sadness"),
-        ("what if my speech is too long", "what_if", "nerves"),
-    ],
-)
-def test_a_question_is_answered_by_its_kind_and_its_area_of_life(
-    text: str, kind: str, area: str, begin: Callable[[int], Any]
-) -> None:
-    asked = hear(material(), Heard(text, seen(text)), State()).asked
-    assert asked is not None
-    assert (asked.kind, "" if asked.area is None else asked.area.name) == (kind, area)
-    heard = hear(material(), Heard(text, seen(text)), State())
-    lines = [line for group in asked.lines(material(), "", heard.asking) for line in group]
-    lines += [line for one in heard.near for group in one.moment.lines("say") for line in group]
-    known = [line.text for line in lines if line.roles <= heard.roles.values.keys()]
-    assert begin(2).say(text) in map(heard.roles.fill, known)
+def test_a_question_is_answered_by_its_kind_and_its_area_of_life(begin: Callable[[int], Any]) -> None:
+    for text, _ in labelled("asked_rows"):
+        heard = hear(material(), Heard(text, seen(text)), State())
+        assert heard.asked is not None
+        lines = [line for group in heard.asked.lines(material(), "", heard.asking) for line in group]
+        lines += [line for one in heard.near for group in one.moment.lines("say") for line in group]
+        known = [line.text for line in lines if line.roles <= heard.roles.values.keys()]
+        assert begin(2).say(text) in map(heard.roles.fill, known), text
 
 
 @pytest.mark.parametrize(
@@ -372,19 +361,6 @@ def test_the_tone_is_right_in_most_of_a_list_of_utterances(begin: Callable[[int]
             wrong.append(f"{text}: {talk.state.tone or '-'}, not {tone}")
     assert len(rows) == 80
     assert len(wrong) <= 0.35 * len(rows), wrong
-
-
-@pytest.mark.parametrize(
-    ("text", "group"),
-    [
-        ("is it silly to hope for snow", "okay"),
-        ("and so, will it be very loud?", "predict"),
-    ],
-)
-def test_no_excuse_comes_where_no_fact_is_asked_for(text: str, group: str, begin: Callable[[int], Any]) -> None:
-    roles = hear(material(), Heard(text, seen(text)), State()).roles
-    lines = {roles.fill(line.text) for line in lines_of(material().asked[group]) if line.roles <= roles.values.keys()}
-    assert {begin(seed).say(text) for seed in range(5)} <= lines
 
 
 @pytest.mark.parametrize("text", ["I only wondered whether the light is still on", "no eggs left in the fridge again"])
