@@ -1,8 +1,8 @@
 """Measure single steps of understanding: the normal form, sums, follow-ups, moves of a game, and the like.
 
 For each set, a function of the same name takes a sentence, and returns its label. A sentence can begin with its situation
-in brackets: ``[asked] yes``. The modules were developed with most of these sentences, so the sets only show that a module
-gets no worse. What must hold for every sentence is a test of the module.
+in brackets: ``[asked] yes``. The modules were developed with these sentences, so the sets only show that a module gets no
+worse. The tests of each module prove the laws that hold for all sentences.
 """
 
 from __future__ import annotations
@@ -45,7 +45,7 @@ from ravestate.modules.skill.wildtalk.listening.tongue import tongue_of
 _SITUATION = re.compile(r"(?:\[([^\]]*)\] )?(.*)")
 _TODAY = date(2026, 6, 1)
 _KNOWN = {"home": ("Hannover",), "name": ("Marlene",), "sister": ("Rosa",), "age": ("33",)}
-"""What memory knows of the user, for `refused_rows`."""
+"""The facts about the user in memory, for `refused_rows`."""
 
 
 def _parts(sentence: str) -> tuple[str, str]:
