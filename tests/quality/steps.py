@@ -140,6 +140,11 @@ def moments_rows(sentence: str) -> str:
     return state.moment or measure.NONE
 
 
+def answer_tones_rows(sentence: str) -> str:
+    """Return the tone of the listener's answer to an utterance at the beginning of a conversation."""
+    return _listener().answer(Heard(sentence, _seen(sentence)), State(), random.Random(0)).state.tone or measure.NONE
+
+
 def asked_rows(sentence: str) -> str:
     """Return the kind of a question that asks for no fact, and the area of life that it is about."""
     asked = hear(material(), Heard(sentence, _seen(sentence)), State()).asked
@@ -167,11 +172,11 @@ SETS: dict[str, Callable[[str], str | list[str]]] = {
     function.__name__: function
     for function in (
         written_rows, addressed_rows, closing_rows, introductions_rows, sums_rows, readings_rows, recalled_rows, moved_rows,
-        turned_rows, repairs_rows, refused_rows, moments_rows, asked_rows, highlights_rows, tongues_rows, wishes_rows,
+        turned_rows, repairs_rows, refused_rows, moments_rows, answer_tones_rows, asked_rows, highlights_rows, tongues_rows, wishes_rows,
     )
 }  # fmt: skip
-FLOORS = {name: 0.95 if len(measure.labelled(name)) > 20 else 0.9 for name in SETS}
-"""The minimum share of right labels. Today, almost every sentence of these sets is understood."""
+FLOORS = {name: 0.95 if len(measure.labelled(name)) > 20 else 0.9 for name in SETS} | {"answer_tones_rows": 0.8}
+"""The minimum share of right labels. Only the tones of answers are clearly below 1 today; small sets may have one miss."""
 
 
 def result(name: str) -> measure.Result:

@@ -1,4 +1,4 @@
-"""All modules use the same name of the user, and the same rest of the utterance. `tests/quality` measures more of them."""
+"""An introduction has the user's name and the rest of the utterance. The quality set ``introductions_rows`` has more."""
 
 import pytest
 

@@ -46,7 +46,7 @@ FRAMES = ("{new}, not {old}", "it's {new}, not {old}", "no, not {old}, {new}", "
 @pytest.mark.parametrize("frame", FRAMES)
 @pytest.mark.parametrize("topic", NEW)
 def test_a_correction_changes_the_fact_whose_value_it_calls_wrong(topic: str, frame: str) -> None:
-    """In any case of letters, and however long ago the fact was mentioned."""
+    """The user can type with or without capitals."""
     for case in (str, str.lower):
         text = case(frame.format(new=NEW[topic], old=ADA[topic][0]))
         assert after(text) == {topic: (NEW[topic],)}, text
@@ -58,7 +58,7 @@ def test_only_the_wrong_one_of_several_values_is_replaced() -> None:
 
 @pytest.mark.parametrize("topic", NEW)
 def test_a_value_that_was_denied_is_never_stored(topic: str) -> None:
-    """Also if somebody or something else is the subject, or nobody has told the value before."""
+    """This holds for any subject, and also if the agent knows nothing about the user yet."""
     for frame in (*FRAMES, "I said {new}, not {old}", "the fair is in {new}, not {old}", "she likes {new}, not {old}"):
         for known in (ADA, {}):
             found = meaning(frame.format(new=NEW[topic], old="Rostock"), known)
@@ -80,7 +80,7 @@ def test_without_a_wrong_value_the_only_fact_of_that_kind_is_corrected() -> None
     assert after("no, York", ADA, asking) == {}
 
 
-def test_a_relative_of_another_is_not_the_users() -> None:
+def test_a_relative_of_a_relative_is_not_taken_for_the_users() -> None:
     assert after("Nora is my brother's wife, not my sister") == {"sister": ()}
     assert after("nora is my brothers wife not my sister") == {"sister": ()}
 
@@ -111,7 +111,7 @@ def test_a_corrected_statement_is_recalled_and_saved(file: Path, look: Look) -> 
     assert look()["Ada"]["has_told"] == ["your sister Rosa lives in Ghent"]
 
 
-def test_a_fact_that_another_module_mentions_may_be_corrected(file: Path) -> None:
+def test_the_user_can_correct_a_fact_that_another_module_mentions(file: Path) -> None:
     module = rs.Module("fan", requires=[rawio])
 
     @module.rule(when=rawio.input.changed, writes=rawio.output, weight=9.0)

@@ -28,7 +28,7 @@ def name_of(sim: Simulation) -> str | None:
     return None if who is None else who["name"]
 
 
-def test_somebody_who_says_a_known_name_is_asked_something_harmless(ada: Path) -> None:
+def test_a_user_who_says_a_known_name_is_asked_a_question_that_reveals_nothing(ada: Path) -> None:
     with agent(ada, confirm=True) as sim:
         said = answers(sim, "i'm ada")
         assert meant(said, "vouch_home") and "Hannover" not in said
@@ -60,7 +60,7 @@ def test_a_person_is_recognised_even_if_memory_knows_only_their_name(file: Path,
         assert meant(answers(sim, "hi, kim here"), "back")
 
 
-def test_nothing_leaks_before_the_answer(ada: Path) -> None:
+def test_the_agent_reveals_no_fact_before_the_user_has_answered(ada: Path) -> None:
     with agent(ada, confirm=True) as sim:
         sim.say("my name is ada")
         for text in ("where do i live?", "who is my sister?", "what do you know about me?", "do i live in hannover?"):
@@ -91,7 +91,7 @@ def test_a_user_whom_the_platform_recognises_needs_no_question(ada: Path) -> Non
 
 
 @pytest.mark.parametrize("text", ["it's me, Marlene", "this is Marlene again", "hello, it is me, marlene"])
-def test_people_say_who_they_are(file: Path, text: str) -> None:
+def test_users_can_say_who_they_are(file: Path, text: str) -> None:
     with agent(file, hibye) as sim:
         sim.say(text)
         assert name_of(sim) == "Marlene"

@@ -1,4 +1,4 @@
-"""Whole talks, in virtual time, over a real memory in a file."""
+"""Whole conversations in virtual time, with a real memory in a file."""
 
 from __future__ import annotations
 
@@ -117,7 +117,7 @@ STORED = {
 }
 
 
-def test_in_a_first_talk_the_agent_learns_about_the_user(file: Path, look: Look) -> None:
+def test_in_a_first_conversation_the_agent_learns_about_the_user(file: Path, look: Look) -> None:
     topics: list[str] = []
     with agent(file) as sim:
         sim.say("I talked about work and the university at breakfast")
@@ -133,7 +133,7 @@ def test_in_a_first_talk_the_agent_learns_about_the_user(file: Path, look: Look)
     assert look() == {"Ada": STORED, "Tom": {}, "Anna": {}}
 
 
-def test_another_session_remembers(file: Path) -> None:
+def test_the_agent_remembers_the_user_in_another_session(file: Path) -> None:
     with agent(file) as sim:
         sim.say("my name is ada and i live in hannover")
     with agent(file) as sim:
@@ -146,7 +146,7 @@ def test_another_session_remembers(file: Path) -> None:
         assert answers(sim, "where do i live").endswith("you live in Hannover.")
 
 
-def test_another_process_remembers(file: Path) -> None:
+def test_the_agent_remembers_the_user_in_another_process(file: Path) -> None:
     code = """
 import sys
 from ravestate.modules import persqa
@@ -209,7 +209,7 @@ def test_a_refused_topic_is_not_asked_again(file: Path, text: str) -> None:
         assert meant(answers(sim, "what is my name?"), "recall_declined")
 
 
-def test_no_means_that_there_is_none_and_dont_know_is_fine(file: Path, look: Look) -> None:
+def test_the_user_can_answer_that_they_have_none_or_do_not_know(file: Path, look: Look) -> None:
     with agent(file, topics=["hobby", "occupation", "friend", "employer"]) as sim:
         sim.say("my name is ada")
         assert asked(sim) == "hobby"
@@ -299,17 +299,17 @@ def test_persqa_takes_turns_with_another_module_in_silences(file: Path) -> None:
     assert {by.count("persqa:ask"), by.count("host:speak")} == {2}
 
 
-# ------------------------------------------------------------------------------------ the user goes first
+# ------------------------------------------------------------------------------------ the user comes first
 
 
-def test_the_users_own_question_goes_first_and_the_answer_may_follow(file: Path) -> None:
+def test_the_users_question_is_answered_first_and_they_can_answer_the_agents_question_later(file: Path) -> None:
     with agent(file, knower()) as sim:
         assert asked(sim) == "name"
         assert answers(sim, "why do you ask?") == "I know it."
         assert meant(answers(sim, "ada"), "learned_name")
 
 
-def test_facts_beside_a_question_are_learnt_in_silence(file: Path, look: Look) -> None:
+def test_facts_beside_a_question_are_learnt_without_a_reply(file: Path, look: Look) -> None:
     with agent(file, knower()) as sim:
         sim.say("my name is ada")
         assert asked(sim) == "home"
@@ -319,7 +319,7 @@ def test_facts_beside_a_question_are_learnt_in_silence(file: Path, look: Look) -
 
 
 @pytest.mark.parametrize("text", ["what a nice day", ""])
-def test_small_talk_is_left_to_others_at_once(file: Path, text: str) -> None:
+def test_small_talk_is_left_to_other_modules_without_delay(file: Path, text: str) -> None:
     with agent(file) as sim:
         assert asked(sim) == "name"
         began = sim.now
@@ -336,7 +336,7 @@ def test_a_greeting_is_answered_by_hibye_but_a_name_in_it_is_learned(file: Path)
         assert meant(answers(sim, "hello, i'm called ada"), "learned_name")
 
 
-def test_it_interrupts_small_talk_and_is_interrupted_by_the_user(file: Path) -> None:
+def test_persqa_interrupts_small_talk_and_the_user_interrupts_persqa(file: Path) -> None:
     with simulate(persqa, chatter(10.0), settings={"ontology": {"path": file}}) as sim:
         sim.say("it is quiet here")
         sim.advance(3.0)
@@ -380,7 +380,7 @@ def at_once(sim: Simulation, *texts: str) -> None:
     assert sim.failures == []
 
 
-def test_utterances_in_one_breath_are_all_learnt(file: Path, look: Look) -> None:
+def test_the_facts_of_simultaneous_utterances_are_all_learnt(file: Path, look: Look) -> None:
     with agent(file) as sim:
         at_once(sim, "my name is ada", "i live in ulm", "my hobby is chess", "i work as a baker")
         assert meant(sim.said[0], "learned_name")
@@ -400,7 +400,7 @@ def test_utterances_in_one_breath_are_all_learnt(file: Path, look: Look) -> None
     assert look() == {"Ada": known, "Tom": {}}
 
 
-def test_utterances_are_learnt_although_reading_takes_long(
+def test_facts_are_learnt_even_if_the_analysis_takes_long(
     file: Path, look: Look, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     loaded = asyncio.Event()
@@ -419,7 +419,7 @@ def test_utterances_are_learnt_although_reading_takes_long(
     assert look() == {"Ada": {"lives_in": ["Ulm"]}}
 
 
-def test_a_user_may_go_on_talking_while_memory_looks_them_up(file: Path, look: Look) -> None:
+def test_a_user_can_go_on_talking_while_memory_looks_them_up(file: Path, look: Look) -> None:
     with agent(file) as sim:
         at_once(sim, "my name is ada", "i live in ulm", "my hobby is chess")
     with agent(file) as sim:
@@ -429,7 +429,7 @@ def test_a_user_may_go_on_talking_while_memory_looks_them_up(file: Path, look: L
     assert look() == {"Ada": {"lives_in": ["Bremen"], "has_hobby": ["chess", "judo"]}}
 
 
-def test_two_agents_of_one_memory_know_one_person(file: Path, look: Look) -> None:
+def test_two_agents_with_the_same_memory_know_one_person(file: Path, look: Look) -> None:
     with agent(file) as one, agent(file) as other:
         for sim in (one, other):
             sim.context.put(rawio.input, "my name is ada")
@@ -467,7 +467,7 @@ def test_a_mistaken_identity_leaves_the_other_person_unchanged(file: Path, look:
     assert look() == {"Ada": {"lives_in": ["Hannover"]}, "Bob": {"lives_in": ["Bremen"]}}
 
 
-def test_a_newcomer_who_turns_out_to_be_known(file: Path, look: Look) -> None:
+def test_a_new_user_who_corrects_their_name_can_be_a_known_person(file: Path, look: Look) -> None:
     with agent(file) as sim:
         sim.say("my name is bob and i live in hannover")
     with agent(file) as sim:
@@ -490,7 +490,7 @@ def test_a_home_is_corrected(file: Path, look: Look, text: str) -> None:
     assert look() == {"Ada": {"lives_in": ["Bremen"]}}
 
 
-def test_a_no_to_the_next_question_is_no_correction(file: Path) -> None:
+def test_a_no_to_the_next_question_does_not_correct_the_last_answer(file: Path) -> None:
     with agent(file, topics=["home", "origin"]) as sim:
         assert asked(sim) == "home"
         sim.say("hannover")
@@ -559,7 +559,7 @@ def test_a_second_hobby_is_added_and_a_correction_replaces_the_last(file: Path, 
 # ------------------------------------------------------------------------------------ who is who
 
 
-def test_the_better_known_of_two_namesakes_is_meant(file: Path) -> None:
+def test_of_two_people_with_the_same_name_the_better_known_one_counts(file: Path) -> None:
     with agent(file) as sim:
         memory = sim.read(ontology.memory)
         assert memory is not None
@@ -571,7 +571,7 @@ def test_the_better_known_of_two_namesakes_is_meant(file: Path) -> None:
         assert sim.read(persqa.who) == second
 
 
-def test_a_mentioned_friend_is_new_when_they_come(file: Path, look: Look) -> None:
+def test_a_friend_who_was_only_mentioned_is_greeted_as_new(file: Path, look: Look) -> None:
     with agent(file) as sim:
         sim.say("my name is ada")
         sim.say("my friends are called tom and anna")
@@ -581,7 +581,7 @@ def test_a_mentioned_friend_is_new_when_they_come(file: Path, look: Look) -> Non
     assert look() == {"Ada": {"friend_of": ["Tom", "Anna"]}, "Tom": {"lives_in": ["Ulm"]}, "Anna": {}}
 
 
-def test_a_friend_of_ones_own_name_is_somebody_else(file: Path, look: Look) -> None:
+def test_a_friend_with_the_users_name_is_another_person(file: Path, look: Look) -> None:
     with agent(file) as sim:
         sim.say("my name is ada")
         sim.say("my friend is called ada")
@@ -652,7 +652,7 @@ def test_the_users_questions_about_themselves_are_answered(file: Path) -> None:
         assert answers(sim, "where can i buy bread?") == "I know it."
 
 
-def test_nothing_is_known_yet(file: Path) -> None:
+def test_the_agent_says_that_it_knows_nothing_about_a_new_user(file: Path) -> None:
     with agent(file) as sim:
         assert meant(answers(sim, "what do you know about me?"), "recall_nothing")
 
@@ -660,7 +660,7 @@ def test_nothing_is_known_yet(file: Path) -> None:
 # ------------------------------------------------------------------------------------ to forget
 
 
-def test_forget_me_forgets_the_user(file: Path, look: Look) -> None:
+def test_after_forget_me_and_a_yes_the_agent_forgets_the_user(file: Path, look: Look) -> None:
     with agent(file) as sim:
         sim.put(interloc.users, {"console": None})
         sim.say("my name is ada and i live in hannover")
@@ -710,7 +710,7 @@ def test_without_memory_users_do_not_hear_that_they_are_forgotten() -> None:
         assert meant(answers(sim, "yes"), "forget_failed")
 
 
-def test_without_memory_the_talk_goes_on_and_the_user_is_told_once() -> None:
+def test_without_memory_the_conversation_goes_on_and_the_user_hears_of_it_once() -> None:
     with agent(None) as sim:
         assert sim.read(ontology.memory) is None
         assert meant(answers(sim, "my name is ada"), "unsaved_name")
@@ -753,7 +753,7 @@ def test_facts_that_could_not_be_saved_are_saved_later(
     assert look() == {"Ada": {"lives_in": ["Ulm"], "works_as": ["baker"]}}
 
 
-def test_a_memory_that_fails_when_users_come_knows_them_later(file: Path, look: Look) -> None:
+def test_a_user_is_recognised_after_memory_works_again(file: Path, look: Look) -> None:
     with agent(file) as sim:
         sim.say("my name is ada and i live in ulm")
     with agent(file) as sim:
@@ -766,7 +766,7 @@ def test_a_memory_that_fails_when_users_come_knows_them_later(file: Path, look: 
     assert look() == {"Ada": {"lives_in": ["Ulm"], "has_hobby": ["chess"]}}
 
 
-def test_the_talk_goes_on_while_another_process_has_the_memory_open(file: Path, look: Look) -> None:
+def test_the_conversation_goes_on_while_another_process_has_the_memory_open(file: Path, look: Look) -> None:
     code = """
 import sys
 from ravestate.modules import ontology
@@ -790,7 +790,7 @@ memory.close().result(20)
 
 
 @pytest.mark.skipif(sys.platform == "win32", reason="Windows has no limit on the size of files")
-def test_the_talk_goes_on_with_a_full_disk(file: Path, look: Look) -> None:
+def test_the_conversation_goes_on_with_a_full_disk(file: Path, look: Look) -> None:
     code = """
 import os, resource, sys
 from ravestate.modules import ontology, persqa
@@ -829,7 +829,7 @@ def test_a_remembered_user_is_known_although_nothing_can_be_saved(
     assert look() == {"Ada": {"lives_in": ["Ulm"], "works_as": ["baker"]}}
 
 
-def test_without_nlp_it_leaves_the_talk_to_others(file: Path) -> None:
+def test_without_nlp_other_modules_answer(file: Path) -> None:
     with simulate(
         persqa,
         chatter(),
@@ -910,7 +910,7 @@ def test_an_unknown_topic_in_the_settings_is_refused() -> None:
     assert "there is no topic 'hobbies'" in str(refused.value.exceptions[0])
 
 
-def test_its_answer_outbids_greetings_and_small_talk() -> None:
+def test_an_answer_of_persqa_has_a_higher_utility_than_greetings_and_small_talk() -> None:
     policy = rs.compile(persqa, hibye, chatter(), knower())
     mine = policy.utility("persqa:respond")
     for other in ("hibye:answer_hello", "hibye:answer_goodbye", "chatter:chat", "knower:answer"):
