@@ -21,7 +21,7 @@ def seen(text: str) -> Analysis:
     return analyse(text, pipeline(""))
 
 
-def test_only_moves_of_the_step_are_understood() -> None:
+def test_an_utterance_is_only_understood_as_a_move_that_is_possible_in_the_step() -> None:
     for text in ("yes", "no", "ready", "stop", "let's play charades", "it was rowing", "what's the score?", "hm", ""):
         heard = seen(text)
         for step in STEPS:

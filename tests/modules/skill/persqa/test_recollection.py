@@ -1,4 +1,4 @@
-"""The user's own words as the answer to a question about them."""
+"""The agent answers with a sentence that the user has said."""
 
 from __future__ import annotations
 
@@ -25,7 +25,7 @@ def test_the_sentence_that_answers_is_quoted(question: str, answer: str) -> None
     assert recollect(question, TOLD) == answer
 
 
-def test_two_sentences_that_follow_each_other_may_answer_together() -> None:
+def test_two_adjacent_sentences_can_answer_together() -> None:
     told = ("The shop opens at nine.", "I bake rolls at the mill.", "Every night 400.", "It rains.")
     assert (
         recollect("Do you remember how many rolls I bake in one night?", told)
@@ -34,9 +34,9 @@ def test_two_sentences_that_follow_each_other_may_answer_together() -> None:
 
 
 @pytest.mark.parametrize("question", ["What was the colour of my first car?", "Which instrument did I learn?"])
-def test_nothing_is_quoted_that_answers_something_else(question: str) -> None:
+def test_a_sentence_that_answers_another_question_is_not_quoted(question: str) -> None:
     assert recollect(question, TOLD) == ""
 
 
-def test_without_anything_told_nothing_is_quoted() -> None:
+def test_before_the_user_has_told_anything_nothing_is_quoted() -> None:
     assert recollect("What did I say?", ()) == ""

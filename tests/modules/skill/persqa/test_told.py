@@ -38,7 +38,7 @@ def test_a_free_statement_is_answered_now_and_another_day(file: Path, told: str,
         assert sim.failures == []
 
 
-def test_it_is_kept_with_the_speaker_and_the_moment(file: Path) -> None:
+def test_a_free_statement_is_kept_with_its_speaker_and_its_time(file: Path) -> None:
     with agent(file) as sim:
         sim.say("my name is ada")
         assert answers(sim, "Jonas plays the violin") == "I see."  # small talk answers
@@ -84,7 +84,7 @@ def test_a_free_statement_can_be_forgotten(file: Path, look: Look, text: str) ->
         ("Jonas plays the violin", "forget Jonas", "what does Jonas play, do you remember?"),
     ],
 )
-def test_forgotten_words_are_not_found_in_the_talk(file: Path, told: str, wish: str, question: str) -> None:
+def test_forgotten_words_are_not_found_in_the_conversation(file: Path, told: str, wish: str, question: str) -> None:
     with agent(file, knower()) as sim:
         sim.say("my name is ada")
         sim.say(told)

@@ -19,7 +19,7 @@ def told(text: str) -> Told | None:
 @pytest.mark.parametrize(
     ("verb", "tense"), [("fell off a wall", "past"), ("will fall soon", "plan"), ("used to fall", "once")]
 )
-def test_a_statement_is_turned(subject: str, turned: str, person: str, verb: str, tense: str) -> None:
+def test_in_a_statement_my_becomes_your_and_the_tense_is_found(subject: str, turned: str, person: str, verb: str, tense: str) -> None:
     found = told(f"{subject} {verb}")
     assert found is not None
     assert (found.echo, found.subject, found.tense) == (f"{turned} {verb}", person, tense)
@@ -28,7 +28,7 @@ def test_a_statement_is_turned(subject: str, turned: str, person: str, verb: str
 @pytest.mark.parametrize(
     "text", [f"I have {' and '.join(f'box {word}' for word in 'abcdefghijkl')} at home", "you can get stamps there"]
 )
-def test_a_long_statement_and_anybodys_you_are_not_repeated(text: str) -> None:
+def test_a_long_statement_or_a_you_that_means_anybody_is_not_repeated(text: str) -> None:
     found = told(text)
     assert found is not None
     assert not found.echo

@@ -50,7 +50,7 @@ def test_what_is_denied_imagined_or_asked_is_no_highlight(frame: str) -> None:
 
 
 @pytest.mark.parametrize("text", ["my cousin Rosalind", "I met Rosalind", "bye robot"])
-def test_a_name_of_a_person_alone_is_no_highlight(text: str) -> None:
+def test_a_persons_name_alone_is_no_highlight(text: str) -> None:
     found = taken(text)
     assert found is None or found.highlight.lower() != "rosalind"
     assert found is None or "robot" not in found.highlight.lower()
@@ -59,7 +59,7 @@ def test_a_name_of_a_person_alone_is_no_highlight(text: str) -> None:
 @pytest.mark.parametrize("mood", MOODS)
 @pytest.mark.parametrize("person", PERSONS)
 @pytest.mark.parametrize("tense", TENSES)
-def test_each_person_tense_and_mood_has_replies(person: str, tense: str, mood: str) -> None:
+def test_there_are_replies_for_each_person_tense_and_mood(person: str, tense: str, mood: str) -> None:
     told = Taken(Told("the roof leaks", person, tense), "the roof")
     groups = list(replies(told, material().taking_up, mood, State(), random.Random(0)))
     assert sum(len(lines) for group in groups for lines in group) >= 2
