@@ -19,7 +19,9 @@ def told(text: str) -> Told | None:
 @pytest.mark.parametrize(
     ("verb", "tense"), [("fell off a wall", "past"), ("will fall soon", "plan"), ("used to fall", "once")]
 )
-def test_in_a_statement_my_becomes_your_and_the_tense_is_found(subject: str, turned: str, person: str, verb: str, tense: str) -> None:
+def test_in_a_statement_my_becomes_your_and_the_tense_is_found(
+    subject: str, turned: str, person: str, verb: str, tense: str
+) -> None:
     found = told(f"{subject} {verb}")
     assert found is not None
     assert (found.echo, found.subject, found.tense) == (f"{turned} {verb}", person, tense)
