@@ -22,23 +22,13 @@ from ravestate.modules.skill.wildtalk.listening.state import Pending
 from .conftest import listener_with, seen
 
 PLAIN = [
-    "the bus came late",
-    "i bought some bread",
-    "my aunt has a garden",
-    "ok",
-    "we sat in the park",
-    "hm",
+    "the bus came late", "i bought some bread", "my aunt has a garden", "ok", "we sat in the park", "hm",
     "it was warm",
-]
+]  # fmt: skip
 ODD = [
-    "the clerk stamped a form",
-    "a man with a ladder stood there",
-    "he carried a bucket",
-    "then he whistled",
-    "the lamp swung",
-    "she pointed at a wall",
-    "they lifted the lid",
-]
+    "the clerk stamped a form", "a man with a ladder stood there", "he carried a bucket", "then he whistled",
+    "the lamp swung", "she pointed at a wall", "they lifted the lid",
+]  # fmt: skip
 """Statements of which no phrase is worth repeating, and that show no feeling."""
 CLAIMS = re.compile(
     r"\b(yesterday|last (?:week|night|year)) I\b|\bI (?:ate|drank|slept|drove|walked|went|visited)\b|\bmy (?:wife|husband|mother)\b"
