@@ -107,7 +107,7 @@ def recalled_rows(sentence: str) -> str:
     return " | ".join(one.text for one in recalled(Reader(_seen(text)), said, {})) or measure.NONE
 
 
-def moved_rows(sentence: str) -> str:
+def charades_rows(sentence: str) -> str:
     """Return the move that an utterance makes in the game of charades. Its situation is the step of the game."""
     step, text = _parts(sentence)
     move = charades.understand(_seen(text), moves_of(cast("Any", step)))
@@ -171,7 +171,7 @@ def wishes_rows(sentence: str) -> str:
 SETS: dict[str, Callable[[str], str | list[str]]] = {
     function.__name__: function
     for function in (
-        written_rows, addressed_rows, closing_rows, introductions_rows, sums_rows, readings_rows, recalled_rows, moved_rows,
+        written_rows, addressed_rows, closing_rows, introductions_rows, sums_rows, readings_rows, recalled_rows, charades_rows,
         turned_rows, repairs_rows, refused_rows, moments_rows, answer_tones_rows, asked_rows, highlights_rows, tongues_rows, wishes_rows,
     )
 }  # fmt: skip

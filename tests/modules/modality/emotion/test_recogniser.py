@@ -32,6 +32,7 @@ def test_a_question_a_condition_or_a_denial_raises_no_feeling(frame: str) -> Non
     for praise in ("you are nice", "you are so clever"):
         assert recognise(praise) == "shy"
         assert recognise(frame.format(praise)) is None
+    assert recognise("The weather is nice.") is None
 
 
 def test_without_the_encoder_recognise_accepts_only_its_examples_and_raises_an_error_for_other_texts(

@@ -1,4 +1,4 @@
-"""Laws of the user's moves in the game. The quality set ``moved_rows`` measures how many utterances are understood."""
+"""Laws of the user's moves in the game. The quality set ``charades_rows`` measures how many utterances are understood."""
 
 from __future__ import annotations
 
