@@ -1,4 +1,4 @@
-"""The normal form turns typed English into correct written English, and knows the original positions."""
+"""Laws of the normal form, which is correct written English. The quality set ``written_rows`` measures how good it is."""
 
 import threading
 from concurrent.futures import ThreadPoolExecutor
@@ -20,53 +20,6 @@ def lexicon() -> None:
     assert load_lexicon() is not None
 
 
-@pytest.mark.parametrize(
-    ("typed", "written"),
-    [
-        ("u cant do that", "You can't do that."),
-        ("im marlene and i live in munich", "I'm Marlene and I live in Munich."),
-        ("hello how are you", "Hello, how are you?"),
-        ("its cold today", "It's cold today."),
-        ("no its ghent", "No, it's Ghent."),
-        ("lets play a game", "Let's play a game."),
-        ("she lets me play", "She lets me play."),
-        ("wats ur name", "What's your name?"),
-        ("ur so nice", "You're so nice."),
-        ("i gotta go 2 bed", "I have to go to bed."),
-        ("i have 2 dogs", "I have 2 dogs."),
-        ("come at 2 you know", "Come at 2 you know."),
-        ("HELLO HOW ARE YOU", "Hello, how are you?"),
-        ("my brohter is a techer,he lives in munich", "My brother is a teacher, he lives in Munich."),
-        ("sooo good", "So good."),
-        ("yesss", "Yes."),
-        ("gr8 thx", "Great thanks."),
-        ("I live in Hannover where do you live", "I live in Hannover. Where do you live?"),
-        ("i am tired what about you", "I am tired. What about you?"),
-        ("when i was young i lived in berlin", "When I was young I lived in Berlin."),
-        ("tell me where he lives", "Tell me where he lives."),
-        ("hello,how are you.i am fine", "Hello, how are you. I am fine."),
-        ("anna's dog", "Anna's dog."),
-        ("see https://example.org/u?r=2", "See https://example.org/u?r=2."),
-        ("my favourite colour is grey", "My favourite colour is grey."),
-        ("she never apologises", "She never apologises."),
-        ("memorise this", "Memorise this."),
-        ("i use to live in hamburg", "I used to live in Hamburg."),
-        ("my names tom", "My name is Tom."),
-        ("where u from", "Where are you from?"),
-        ("i live in new york", "I live in New York."),
-        ("ive never been 2 rome", "I've never been to Rome."),
-        ("i ve been here 2 times", "I've been here 2 times."),
-        ("plz tell me a storry", "Please tell me a story."),
-        ("ya i do", "Yes, I do."),
-        ("im good and you", "I'm good and you?"),
-        ("we moved in december", "We moved in December."),
-        ("", ""),
-    ],
-)
-def test_carelessly_typed_english_becomes_correct_english(typed: str, written: str) -> None:
-    assert normalise(typed).text == written
-
-
 def test_names_are_not_corrected_and_get_a_capital() -> None:
     assert normalise("hello freinda how are you", ["Freinda"]).text == "Hello Freinda. How are you?"
     assert normalise("my name is kira and i come from hildesheim").text == "My name is Kira and I come from Hildesheim."
@@ -84,34 +37,8 @@ def test_a_correct_sentence_stays_as_it_is() -> None:
     assert [(text, normalise(text).text) for text in SENTENCES if normalise(text).text != text] == []
 
 
-words = st.sampled_from(
-    [
-        *WRITTEN,
-        *[
-            "I",
-            "you",
-            "munich",
-            "where",
-            "do",
-            "are",
-            "what",
-            "hello",
-            "yes",
-            "brohter",
-            "sooo",
-            "2",
-            "4",
-            ",",
-            ".",
-            "?",
-            "!",
-            "\n",
-            "’",
-            "()",
-            "it's",
-        ],
-    ]
-)
+ODD = ["()", "it's", "’", "\n", "brohter", "sooo", "2", "4", ",", ".", "?", "!"]
+words = st.sampled_from([*WRITTEN, *ODD, "I", "you", "munich", "where", "do", "are", "what", "hello", "yes"])
 texts = st.lists(words, max_size=14).map(" ".join) | st.text(max_size=40)
 
 

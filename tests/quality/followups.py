@@ -25,7 +25,8 @@ from ravestate.modules.skill.genqa.passages import passages_of
 from ravestate.testing import simulate
 
 ROWS = HERE / "thread_rows.yaml"
-FILES = (ROWS, HERE / "thread_station_rows.yaml", HERE / "thread_town_rows.yaml")
+SHIP = HERE / "thread_ship_rows.yaml"
+FILES = (ROWS, SHIP, HERE / "thread_station_rows.yaml", HERE / "thread_town_rows.yaml")
 
 
 def measure_followups(file: Path = ROWS, every: int = 1) -> Result:

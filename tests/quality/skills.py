@@ -20,9 +20,7 @@ from ravestate.modules.skill.agentqa.life_file import read_life
 from ravestate.modules.skill.agentqa.remarks import act_in, remark_in
 from ravestate.modules.skill.agentqa.router import Match, router_of
 from ravestate.modules.skill.persqa import kinds
-from ravestate.modules.skill.persqa.reading import Reader
 from ravestate.modules.skill.persqa.talk import Talk
-from ravestate.modules.skill.persqa.told import told_in
 from ravestate.modules.skill.persqa.topics import Fact
 from ravestate.modules.skill.persqa.understanding import Meaning, understand
 from ravestate.modules.skill.wildtalk.facts import asks_for_fact
@@ -102,18 +100,6 @@ def _listener() -> Listener:
 def smalltalk(sentence: str) -> str:
     """Return the listener's answer to an utterance that begins a conversation."""
     return _listener().answer(Heard(sentence, _seen(sentence)), State(), random.Random(0)).text
-
-
-def facts(sentence: str) -> str:
-    """Return the facts in a sentence, if no fact is known and no question was asked before.
-
-    Semicolons join the facts: ``topic=value``, ``topic=a|b``, ``not topic=value``, or ``Subject / verb / object`` if no
-    topic fits. Without facts, return ``-``.
-    """
-    _load()
-    reader = Reader(_seen(sentence))
-    free = [f"{told.subject} / {told.verb} / {told.object}" for told in told_in(reader)]
-    return "; ".join([*map(_label, sorted(reader.facts(), key=lambda fact: fact.topic)), *free]) or "-"
 
 
 def _label(fact: Fact) -> str:

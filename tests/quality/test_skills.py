@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections import Counter
+from pathlib import Path
 
 import pytest
 
@@ -61,7 +62,8 @@ def test_the_set_agentqa_asks_has_no_example_of_agentqa() -> None:
     assert examples.isdisjoint(plain(text) for text, _ in measure.labelled("agentqa_asks"))
 
 
-def test_follow_ups_are_answered_above_the_floor() -> None:
-    result = followups.measure_followups(every=4)
+@pytest.mark.parametrize(("file", "every"), [(followups.ROWS, 4), (followups.SHIP, 1)])
+def test_follow_ups_are_answered_above_the_floor(file: Path, every: int) -> None:
+    result = followups.measure_followups(file, every)
     assert result.shares["right"] >= 0.90, "\n  ".join(result.misses)
     assert result.shares["wrong"] <= 0.03, "\n  ".join(result.misses)

@@ -22,7 +22,10 @@ def changes(sentence: str) -> frozenset[str]:
         return frozenset()
     facts = dict(learn(known, meaning.facts).facts)
     for name in sorted((fact for fact in meaning.facts if fact.topic == NAME), key=lambda fact: not fact.gone):
-        facts[NAME] = () if name.gone else name.values
+        if not name.gone:
+            facts[NAME] = name.values
+        elif not name.values or {*name.values} & {*known.get(NAME, ())}:  # "I am not Bob" leaves another name
+            facts[NAME] = ()
     new = {f"{topic}={value}" for topic in facts for value in facts[topic] if value not in known.get(topic, ())}
     kept = {topic for topic in known if facts.get(topic) and topic in blind.SINGLE}  # a new value replaces the old one
     gone = {

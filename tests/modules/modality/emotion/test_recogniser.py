@@ -11,61 +11,28 @@ from ravestate.modules.modality.emotion import recogniser
 from ravestate.modules.modality.emotion.recogniser import recognise
 
 
-@pytest.mark.parametrize(
-    ("sentence", "feeling"),
-    [
-        ("Rosie is so clever!", "shy"),
-        ("Rosie's voice is lovely", "shy"),
-        ("rosie's so cute", "shy"),
-        ("I love Rosie.", "affectionate"),
-        ("Rosie isn't nice.", None),
-        ("Rosalie is so clever!", None),
-        ("This robot is amazing.", "shy"),
-    ],
-)
-def test_a_sentence_about_the_agents_name_raises_a_feeling(sentence: str, feeling: str | None) -> None:
-    assert recognise(sentence, ["Rosie"]) == feeling
+def test_a_sentence_about_the_agents_name_means_the_agent() -> None:
+    assert recognise("Rosie is so clever!", ["Rosie"]) == recognise("You are so clever!") == "shy"
+    assert recognise("Rosie is so clever!", ["Ada"]) is None
 
 
 @pytest.mark.parametrize(
     "text",
     [
-        "",
-        "   ",
-        "?",
-        "...",
-        "!!!",
-        "\x00\x07",
-        "\ud800",
-        "مرحبا بك",
-        "Der Zug fährt um neun.",
-        "you " * 50_000,
-        "a" * 100_000,
-        "?!" * 20_000 + "x",
-        "so very really " * 10_000,
+        "", "   ", "?", "...", "!!!", "\x00\x07", "\ud800", "مرحبا بك", "Der Zug fährt um neun.",
+        "you " * 50_000, "a" * 100_000, "?!" * 20_000 + "x", "so very really " * 10_000,
     ],
-)
+)  # fmt: skip
 def test_recognise_accepts_any_text(text: str) -> None:
     assert recognise(text) in (None, "surprised", "happy", "affectionate")
 
 
-@pytest.mark.parametrize(
-    ("text", "feeling"),
-    [
-        ("You are not nice.", None),
-        ("if you were nice, I would stay", None),
-        ("are you nice?", None),
-        ("the weather is nice", None),
-        ("my sister is so clever", None),
-        ("You are not clever, but you are very nice.", "shy"),
-        ("I got my results, and I failed", None),
-        ("I love you, you are so clever", "affectionate"),
-        ("My dog died.", "sad"),
-        ("🎉🎉", "happy"),
-    ],
-)
-def test_recognise_gives_the_results_that_the_readme_shows(text: str, feeling: str | None) -> None:
-    assert recognise(text) == feeling
+@pytest.mark.parametrize("frame", ["{}?", "If {}, I would stay.", "It is not true that {}."])
+def test_a_question_a_condition_or_a_denial_raises_no_feeling(frame: str) -> None:
+    for praise in ("you are nice", "you are so clever"):
+        assert recognise(praise) == "shy"
+        assert recognise(frame.format(praise)) is None
+    assert recognise("The weather is nice.") is None
 
 
 def test_without_the_encoder_recognise_accepts_only_its_examples_and_raises_an_error_for_other_texts(

@@ -1,4 +1,4 @@
-"""A user can ask the agent to remember or forget their face."""
+"""A user can ask the agent to remember or forget their face. The quality set ``wishes_rows`` has more sentences."""
 
 import pytest
 
@@ -7,22 +7,11 @@ from ravestate.modules.modality.visionio.wishes import wish_of
 pytestmark = pytest.mark.usefixtures("reader")
 
 
-@pytest.mark.parametrize(
-    ("text", "wish"),
-    [
-        ("forget my face", "forget"),
-        ("Could you please forget my face?", "forget"),
-        ("I want you to delete my face from your database.", "forget"),
-        ("Hey, forget what I look like.", "forget"),
-        ("remember my face", "remember"),
-        ("You should remember how I look!", "remember"),
-        ("Do you remember my face?", ""),
-        ("I never forget a face.", ""),
-        ("My face hurts.", ""),
-        ("forget my name", ""),
-        ("It looks like rain.", ""),
-        ("", ""),
-    ],
-)
-def test_wish_of_recognises_requests_about_a_face(text: str, wish: str) -> None:
-    assert wish_of(text) == wish
+def test_a_wish_must_be_about_the_face() -> None:
+    assert wish_of("forget my face") == "forget"
+    assert wish_of("remember my face") == "remember"
+    assert not any(map(wish_of, ("forget my name", "remember the milk", "My face hurts.", "")))
+
+
+def test_to_forget_outweighs_to_remember() -> None:
+    assert wish_of("remember my face. No, forget my face.") == "forget"

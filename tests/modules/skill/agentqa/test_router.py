@@ -75,27 +75,3 @@ def test_the_error_about_a_missing_model_names_its_file(tmp_path: Path) -> None:
     router = Router(read_life(), Encoder(tmp_path / "none"))
     with pytest.raises(PlatformError, match=r"model\.onnx"):
         router.route("how old are you")
-
-
-@pytest.mark.parametrize(
-    ("text", "topic"),
-    [
-        ("Good evening. I am Nora, and I repair clocks.", None),
-        ("Good morning. They say that you talk.", None),
-        ("you're all right", None),
-        ("And what is time for you, machine?", None),
-        ("so what did you learn about me today?", None),
-        ("Do you contain a neural network?", "inside"),
-        ("Does a language model write your answers?", "inside"),
-        ("are you a boy?", "gender"),
-        ("did you laugh at my joke?", "laughing"),
-        ("do you ever fall ill?", "health"),
-    ],
-)
-def test_greetings_and_questions_about_the_agents_nature_are_not_taken_for_how_are_you(
-    text: str, topic: str | None
-) -> None:
-    router = Router(read_life())
-    router.load()
-    found = router.route(text, question="?" in text)
-    assert (found.topic if isinstance(found, Match) else None) == topic

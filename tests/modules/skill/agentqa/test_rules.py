@@ -102,12 +102,7 @@ def test_agentqa_alone_answers_questions_about_the_agent(tmp_path: Path) -> None
     ("text", "who"),
     [
         ("What is my name?", "encyclopaedia"),
-        ("how old is the queen", "encyclopaedia"),
-        ("will it rain today", "encyclopaedia"),
-        ("what are you up to today", "encyclopaedia"),
         ("My father is a baker.", "chatter"),
-        ("you are nice", "chatter"),
-        ("open the door please", "chatter"),
         ("", "chatter"),
         ("x" * 100_000, "chatter"),
         ("how old are " * 9_000, "encyclopaedia"),
@@ -228,24 +223,13 @@ def test_the_words_and_you_without_an_earlier_question_are_left_to_other_modules
         assert say(sim, "and you") == "chatter"
 
 
-@pytest.mark.parametrize(
-    ("question", "begins"),
-    [
-        ("can you dance?", ("Not that", "No, ")),
-        ("Do you speak German?", ("Not that", "No, ")),
-        ("do you speak English", ("Yes, I speak English.",)),
-        ("do you play chess", ("Yes, chess", "Oh yes, chess")),
-        ("do you like pizza?", ("chatter",)),
-        ("do you like ice cream", ("Yes, I do", "Ice cream?")),
-        ("what can you do?", ("What I can do", "I am good", "My talents")),
-        ("can you do anything useful?", ("What I can do", "I am good", "My talents")),
-    ],
-)
-def test_a_yes_no_question_about_one_thing_is_answered_with_yes_or_no(
-    question: str, begins: tuple[str, ...], tmp_path: Path
-) -> None:
-    with start(tmp_path, chatter) as sim:
-        assert say(sim, question).startswith(begins)
+def test_a_yes_no_question_about_one_thing_is_answered_with_yes_or_no(tmp_path: Path) -> None:
+    with start(tmp_path, chatter, own="facts: {languages: [English, Welsh]}") as sim:
+        for language in ("English", "Welsh", "German", "Danish"):
+            yes = language in ("English", "Welsh")
+            said = say(sim, f"Do you speak {language}?")
+            assert said.startswith(("Yes", "Oh yes") if yes else ("No, ", "Not that")), (language, said)
+        assert not say(sim, "what can you do?").startswith(("Yes", "No"))
 
 
 def test_the_agent_explains_what_it_does_with_the_users_words(tmp_path: Path, caplog: pytest.LogCaptureFixture) -> None:

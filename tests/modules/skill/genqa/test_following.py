@@ -1,4 +1,4 @@
-"""Questions with qualifiers (such as "the second woman"), comparisons, sums, and follow-up questions."""
+"""Answers fit the qualifiers of a question, and compare things. The quality set ``thread_ship_rows`` has more of them."""
 
 from collections.abc import Iterator
 
@@ -44,70 +44,22 @@ def ask(answerer: Answerer, *said: str) -> str:
     return text
 
 
-@pytest.mark.parametrize(
-    "question",
-    [
-        "Who was the second woman who swam across Lake Orm?",
-        "Who was the first man who swam across Lake Orm?",
-        "Who was the captain of the Halcyon in 1950?",
-        "Who was the captain of the Halcyon before Olga Brand?",
-        "What is the deepest lake in Norland?",
-        "How many people live in Narnia?",
-    ],
-)
-def test_a_question_gets_no_answer_if_no_passage_fits_its_qualifier(answerer: Answerer, question: str) -> None:
-    assert ask(answerer, question) == ""
+def test_a_question_is_answered_only_if_a_passage_fits_its_qualifier(answerer: Answerer) -> None:
+    assert "Ida Falk" in ask(answerer, "Who was the first woman who swam across Lake Orm?")
+    for qualifier in ("second woman", "last woman", "first man"):
+        assert ask(answerer, f"Who was the {qualifier} who swam across Lake Orm?") == ""
 
 
-@pytest.mark.parametrize(
-    ("question", "answer"),
-    [
-        ("Who was the first woman who swam across Lake Orm?", "Ida Falk"),
-        ("What is the deepest lake outside Norland?", "Lake Sill"),
-        ("captain of the halcyon", "Olga Brand"),
-    ],
-)
-def test_a_question_is_answered_if_a_passage_fits_its_qualifier(answerer: Answerer, question: str, answer: str) -> None:
-    assert answer in ask(answerer, question)
+def test_numbers_with_units_are_compared(answerer: Answerer) -> None:
+    """The Halcyon is 120 metres long, and the Petrel 40 feet."""
+    assert ask(answerer, "Which is longer, the Halcyon or the Petrel?").startswith("The Halcyon.")
+    assert ask(answerer, "Which is shorter, the Halcyon or the Petrel?").startswith("The Petrel.")
+    assert ask(answerer, "How long is the Halcyon?", "is it longer than the Petrel?").startswith("Yes.")
 
 
-@pytest.mark.parametrize(
-    ("said", "begins"),
-    [
-        (["Which is longer, the Halcyon or the Petrel?"], "The Halcyon."),
-        (["which is shorter, the Halcyon or the Petrel?"], "The Petrel."),
-        (["which is older, the Halcyon or the Petrel?"], "The Halcyon."),
-        (["How long is the Halcyon?", "How long is the Petrel?", "which one is longer?"], "The Halcyon."),
-        (["How long is the Halcyon?", "How long is the Petrel?", "how much longer?"], "107.808 metres."),
-        (["How long is the Halcyon?", "is it longer than the Petrel?"], "Yes."),
-        (["How old was Ida Falk when she died?"], "From 3 May 1900 to 9 June 1985 it is 85 years."),
-    ],
-)
-def test_amounts_and_dates_are_compared(answerer: Answerer, said: list[str], begins: str) -> None:
-    assert ask(answerer, *said).startswith(begins)
-
-
-@pytest.mark.parametrize(
-    ("said", "answer"),
-    [
-        (["How long is the Halcyon?", "how much is that in feet?"], "That is 394 feet."),
-        (["what is 12 times 12", "plus 6", "and half of that"], "That is 75."),
-        (["what is 15 percent of 80", "and of 200?"], "That is 30."),
-        (["when was Ida Falk born", "and when did she die", "how many years is that"], "it is 85 years."),
-        (["100 euros in dollars"], "no exchange rates"),
-    ],
-)
-def test_a_sum_can_refer_to_earlier_answers(answerer: Answerer, said: list[str], answer: str) -> None:
-    assert answer in ask(answerer, *said)
-
-
-@pytest.mark.parametrize("follow", ["and Lake Sill?", "how old is it?", "who founded it?", "why?", "really?"])
-def test_a_follow_up_gets_no_answer_if_no_document_has_the_fact(answerer: Answerer, follow: str) -> None:
-    assert ask(answerer, "How deep is Lake Orm?", follow) == ""
-
-
-def test_a_question_with_the_word_else_does_not_get_the_same_answer_again(answerer: Answerer) -> None:
-    assert ask(answerer, "How deep is Lake Orm?", "how deep else is it?") == ""
+def test_a_sum_can_refer_to_earlier_answers(answerer: Answerer) -> None:
+    assert "394 feet" in ask(answerer, "How long is the Halcyon?", "how much is that in feet?")
+    assert "75" in ask(answerer, "what is 12 times 12", "plus 6", "and half of that")
 
 
 def test_a_yes_no_question_is_reworded_as_a_question_that_asks_for_the_fact() -> None:

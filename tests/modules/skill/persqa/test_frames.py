@@ -1,4 +1,4 @@
-"""The words around a value show its topic, even in a sentence that is in no table and no example."""
+"""The words around a value tell its topic, although no table and no example has them."""
 
 from __future__ import annotations
 
@@ -8,25 +8,16 @@ from quality.blind import stored
 
 
 @pytest.mark.parametrize(
-    ("sentence", "fact"),
-    [
-        ("I am passionate about jazz", "liking=jazz"),
-        ("I was hired by the railway", "employer=the railway"),
-        ("the railway has employed me since May", "employer=the railway"),
-    ],
-)
-def test_the_topic_of_a_value_is_found_in_a_sentence_that_is_in_no_table(sentence: str, fact: str) -> None:
-    assert fact in stored(sentence)
+    ("frame", "topic"), [("I am passionate about {}", "liking"), ("I was hired by {}", "employer"), ("I entered this world in {}", "birthplace")]
+)  # fmt: skip
+def test_the_words_around_a_value_show_its_topic(frame: str, topic: str) -> None:
+    for value in {"liking": ("jazz", "films"), "employer": ("the railway", "Bosch"), "birthplace": ("Sousse", "Ulm")}[
+        topic
+    ]:
+        assert f"{topic}={value}".lower() in stored(frame.format(value))
 
 
-@pytest.mark.parametrize(
-    "sentence",
-    [
-        "I got lost in Sousse",
-        "I am waiting for marzipan",
-        "the railway has annoyed me since May",
-        "I run a flower shop",
-    ],
-)
-def test_a_sentence_without_a_topic_gives_no_fact(sentence: str) -> None:
-    assert not any("=" in one for one in stored(sentence))
+@pytest.mark.parametrize("frame", ["I got lost in {}", "I am waiting for {}", "{} has annoyed me since May"])
+def test_a_sentence_without_a_topic_gives_no_fact(frame: str) -> None:
+    for value in ("Sousse", "marzipan", "the railway"):
+        assert not any("=" in one for one in stored(frame.format(value)))

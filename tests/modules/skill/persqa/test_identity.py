@@ -28,7 +28,7 @@ def name_of(sim: Simulation) -> str | None:
     return None if who is None else who["name"]
 
 
-def test_a_user_who_gives_a_known_name_is_asked_about_a_harmless_fact(ada: Path) -> None:
+def test_a_user_who_says_a_known_name_is_asked_a_question_that_reveals_nothing(ada: Path) -> None:
     with agent(ada, confirm=True) as sim:
         said = answers(sim, "i'm ada")
         assert meant(said, "vouch_home") and "Hannover" not in said
@@ -62,7 +62,7 @@ def test_a_person_is_recognised_even_if_memory_knows_only_their_name(file: Path,
         assert meant(answers(sim, "hi, kim here"), "back")
 
 
-def test_the_agent_tells_no_facts_before_the_user_has_answered(ada: Path) -> None:
+def test_the_agent_reveals_no_fact_before_the_user_has_answered(ada: Path) -> None:
     with agent(ada, confirm=True) as sim:
         sim.say("my name is ada")
         for text in ("where do i live?", "who is my sister?", "what do you know about me?", "do i live in hannover?"):
@@ -93,7 +93,7 @@ def test_a_user_whom_the_platform_recognises_is_asked_no_question(ada: Path) -> 
 
 
 @pytest.mark.parametrize("text", ["it's me, Marlene", "this is Marlene again", "hello, it is me, marlene"])
-def test_phrases_such_as_its_me_marlene_give_the_users_name(file: Path, text: str) -> None:
+def test_users_can_say_who_they_are(file: Path, text: str) -> None:
     with agent(file, hibye) as sim:
         sim.say(text)
         assert name_of(sim) == "Marlene"
@@ -119,13 +119,8 @@ def test_a_user_can_say_that_the_agent_has_mistaken_them_for_another_person(ada:
     assert "works_as" not in people["Ada"] and people["Emma"] == {"works_as": ["baker"]}
 
 
-@pytest.mark.parametrize(
-    "text",
-    ["I am not Ada, that is not me", "I'm not Ada", "you are wrong, I'm not Ada", "my name isn't Ada", "Ada is not my name", "don't call me Ada"],
-)  # fmt: skip
-def test_after_a_user_denies_a_name_the_agent_asks_again_and_keeps_no_person_of_that_name(
-    file: Path, look: Look, text: str
-) -> None:
+@pytest.mark.parametrize("text", ["I'm not Ada", "my name isn't Ada"])
+def test_a_denied_name_is_asked_again_and_leaves_no_person(file: Path, look: Look, text: str) -> None:
     with agent(file) as sim:
         sim.say("my name is ada")
         assert meant(answers(sim, text), "mistaken")
@@ -135,15 +130,7 @@ def test_after_a_user_denies_a_name_the_agent_asks_again_and_keeps_no_person_of_
     assert list(look()) == ["Ida"]
 
 
-@pytest.mark.parametrize("text", ["I'm not tired", "my sister is not Ada", "I am not Bob"])
-def test_a_denial_of_something_else_does_not_change_the_name(file: Path, text: str) -> None:
-    with agent(file) as sim:
-        sim.say("my name is ada")
-        sim.say(text)
-        assert name_of(sim) == "Ada"
-
-
-def test_the_agent_asks_for_the_name_only_after_the_first_hello(file: Path) -> None:
+def test_the_name_is_asked_after_the_first_hello_once(file: Path) -> None:
     with agent(file, hibye) as sim:
         sim.say("hello")
         assert "hibye:answer_hello" in sim.fired and len(sim.said) == 1

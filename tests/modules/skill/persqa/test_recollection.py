@@ -1,4 +1,4 @@
-"""The agent answers a question by quoting what the user has said."""
+"""The agent answers with a sentence that the user has said."""
 
 from __future__ import annotations
 
@@ -25,7 +25,7 @@ def test_the_sentence_that_answers_the_question_is_quoted(question: str, answer:
     assert recollect(question, TOLD) == answer
 
 
-def test_two_successive_sentences_can_be_the_answer_together() -> None:
+def test_two_adjacent_sentences_can_answer_together() -> None:
     told = ("The shop opens at nine.", "I bake rolls at the mill.", "Every night 400.", "It rains.")
     assert (
         recollect("Do you remember how many rolls I bake in one night?", told)
@@ -38,5 +38,5 @@ def test_a_sentence_that_answers_another_question_is_not_quoted(question: str) -
     assert recollect(question, TOLD) == ""
 
 
-def test_nothing_is_quoted_if_the_user_has_said_nothing() -> None:
+def test_before_the_user_has_told_anything_nothing_is_quoted() -> None:
     assert recollect("What did I say?", ()) == ""

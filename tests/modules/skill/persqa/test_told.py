@@ -1,4 +1,4 @@
-"""Free statements, such as "Jonas plays the violin": the agent remembers them, answers with them, and forgets them."""
+"""Free statements are remembered, used as answers, and forgotten. The quality set ``recalled_rows`` has more questions."""
 
 from __future__ import annotations
 
@@ -40,7 +40,7 @@ def test_a_free_statement_answers_a_question_in_this_and_a_later_session(
         assert sim.failures == []
 
 
-def test_a_free_statement_is_saved_with_its_speaker_and_its_time(file: Path) -> None:
+def test_a_free_statement_is_kept_with_its_speaker_and_its_time(file: Path) -> None:
     with agent(file) as sim:
         sim.say("my name is ada")
         assert answers(sim, "Jonas plays the violin") == "I see."  # small talk answers
@@ -60,31 +60,7 @@ def test_a_statement_that_comes_before_the_users_name_is_recalled_and_saved(file
     assert look() == {"Ada": {"has_told": ["you painted a dragon"]}}
 
 
-MEANT = [
-    ("my presentation is on Thursday", "when is my presentation?", "your presentation is on Thursday"),
-    ("I drive for Transkorn", "who do I drive for, do you remember?", "you drive for Transkorn"),
-    ("my friend Enno broke his arm", "who broke his arm, do you remember?", "Enno broke his arm"),
-    ("my daughter Nele is six weeks old", "how old is Nele, do you remember?", "Nele is six weeks old"),
-    ("my company makes pumps in Kassel", "Where does my company make pumps?", "your company makes pumps in Kassel"),
-    ("A tuba has four valves", "How many valves does a tuba have?", "a tuba has four valves"),
-    ("I met Jonas in the swimming pool. He plays the harp", "what does he play again?", "Jonas plays the harp"),
-    ("I met Jonas in the swimming pool. He plays the harp", "and where did I meet him?", "in the swimming pool"),
-    ("my sister Mona came, and she has just bought a boat", "who has the boat then?", "Mona has just bought a boat"),
-    ("my ex Ralf came by. he used to be a baker", "what was ralf before?", "Ralf used to be a baker"),
-    ("I do not live in Lund", "What have I told you about Lund?", "you do not live in Lund"),
-    ("I am a potter", "do you still know what I do?", "you are a potter"),
-]
-
-
-@pytest.mark.parametrize(("told", "question", "answer"), MEANT, ids=[told for told, _, _ in MEANT])
-def test_a_question_in_other_words_finds_the_statement(file: Path, told: str, question: str, answer: str) -> None:
-    with agent(file, knower()) as sim:
-        sim.say("I painted a dragon")
-        sim.say(told)
-        assert answer in answers(sim, question)
-
-
-def test_a_question_that_no_statement_answers_is_left_to_other_modules(file: Path) -> None:
+def test_a_question_that_nothing_answers_is_left_to_others(file: Path) -> None:
     with agent(file, knower()) as sim:
         sim.say("my presentation is on Thursday")
         assert answers(sim, "can I ask you something?") == "I know it."
@@ -110,9 +86,7 @@ def test_a_free_statement_can_be_forgotten(file: Path, look: Look, text: str) ->
         ("Jonas plays the violin", "forget Jonas", "what does Jonas play, do you remember?"),
     ],
 )
-def test_a_forgotten_statement_is_not_recalled_from_the_conversation(
-    file: Path, told: str, wish: str, question: str
-) -> None:
+def test_forgotten_words_are_not_found_in_the_conversation(file: Path, told: str, wish: str, question: str) -> None:
     with agent(file, knower()) as sim:
         sim.say("my name is ada")
         sim.say(told)
@@ -159,58 +133,16 @@ def test_forgetting_a_relative_removes_the_statements_about_them(file: Path, loo
     assert look() == {"Ada": {}}
 
 
-@pytest.mark.parametrize(
-    "text",
-    [
-        "Jonas wants to play the violin",
-        "does Jonas play the violin?",
-        "my friend says that Jonas plays the violin",
-        "Jonas doesn't play the violin",
-        "I have a question",
-        "I like this song",
-        "you play the violin",
-        "the weather is nice",
-    ],
-)
-def test_wishes_questions_hearsay_denials_and_trivial_remarks_are_not_saved(file: Path, text: str) -> None:
-    with agent(file) as sim:
-        sim.say(text)
-        assert dict(sim.read(persqa.told)) == {}
+@pytest.mark.parametrize("frame", ["{} wants to play", "does {} play?", "Tom says that {} plays", "{} doesn't play"])
+def test_wishes_questions_hearsay_and_denials_are_not_kept(frame: str) -> None:
+    for who in ("Jonas", "my sister", "I"):
+        assert told_in(Reader(analyse(f"{frame.format(who)} the violin", pipeline(""))))[0] == []
 
 
-@pytest.mark.parametrize(
-    ("told", "question", "answer"),
-    [
-        (
-            ("my neighbour Karl plays the drums", "my neighbour is ill", "my neighbour has a cat"),
-            "Who is my neighbour?",
-            ["your neighbour Karl plays the drums"],
-        ),
-        (("my neighbour is karl", "my neighbour was late"), "who is my neighbour", ["your neighbour is karl"]),
-        (("my boss is Ms Voss", "my boss was late today"), "who is my boss?", ["your boss is Ms Voss"]),
-        (
-            ("my neighbour is called Karl", "my neighbours have a dog"),
-            "what is my neighbour called?",
-            ["your neighbour is called Karl"],
-        ),
-        (
-            ("my neighbour Karl plays the drums", "my neighbour Petra sings"),
-            "who are my neighbours?",
-            ["your neighbour Karl plays the drums", "your neighbour Petra sings"],
-        ),
-        (("my neighbour sings",), "what is my neighbour called?", []),
-        (("my neighbour is Karl", "my neighbour is Tom"), "who is my neighbour?", ["your neighbour is Tom"]),
-        (
-            ("my neighbour Karl plays the drums", "my neighbour is ill"),
-            "what do you know about my neighbour?",
-            ["your neighbour Karl plays the drums", "your neighbour is ill"],
-        ),
-    ],
-)
-def test_a_question_about_a_person_is_answered_with_the_statements_that_name_them(
-    told: tuple[str, ...], question: str, answer: list[str]
-) -> None:
+@pytest.mark.parametrize("relative", ["neighbour", "boss"])
+def test_a_question_for_a_person_is_answered_with_their_name(relative: str) -> None:
     said: list[Told] = []
-    for text in told:
+    for text in (f"my {relative} is ill", f"my {relative} Karl plays the drums", f"my {relative} has a cat"):
         said += told_in(Reader(analyse(text, pipeline(""))), said)[1]
-    assert [one.text for one in recalled(Reader(analyse(question, pipeline(""))), said, {})] == answer
+    found = recalled(Reader(analyse(f"Who is my {relative}?", pipeline(""))), said, {})
+    assert [one.text for one in found] == [f"your {relative} Karl plays the drums"]

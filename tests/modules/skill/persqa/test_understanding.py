@@ -1,4 +1,4 @@
-"""Properties of any utterance. The quality set ``persqa_facts`` measures how well persqa understands sentences."""
+"""Laws for every utterance. The quality set ``persqa_facts`` measures how well utterances are understood."""
 
 from dataclasses import replace
 
@@ -43,7 +43,7 @@ def test_an_answer_counts_only_while_the_question_is_open() -> None:
     assert understand(heard, talk_about("home"), {}, 91.0, 90.0).kind == "nothing"
 
 
-def test_a_denial_of_an_unknown_fact_gets_no_answer() -> None:
+def test_a_denial_of_an_unknown_fact_gets_no_reply() -> None:
     heard = seen("i don't live in hannover")
     assert not understand(heard, Talk(), {}, 1.0, 90.0).aloud
     assert understand(heard, Talk(), {"home": ("Hannover",)}, 1.0, 90.0).aloud
@@ -91,14 +91,14 @@ def test_a_name_before_a_question_is_learned_without_a_comment() -> None:
     assert [fact.values for fact in meaning.facts] == [("Thabo",)] and not meaning.aloud
 
 
-def test_his_name_means_the_name_of_the_relative_mentioned_before() -> None:
+def test_his_name_is_the_name_of_the_relative_mentioned_before() -> None:
     father = understand(seen("My father died nine days ago."), Talk(), {}, 1.0, 90.0)
     talk = Talk().listening(1.0, leave=False, person=father.person)
     told = understand(seen("His name was Joost."), talk, {}, 2.0, 90.0)
     assert [(fact.topic, fact.values) for fact in told.facts] == [("father", ("Joost",))]
 
 
-def test_persqa_does_not_answer_a_refusal_if_a_sum_follows_it() -> None:
+def test_a_refusal_before_a_sum_gets_no_reply() -> None:
     meaning = understand(seen("no time. 12 x 30 / 5"), Talk().asking("name", 0.0), {}, 1.0, 90.0)
     assert meaning.kind == "nothing" or not meaning.aloud
 

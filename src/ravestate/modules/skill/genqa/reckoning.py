@@ -456,7 +456,7 @@ def _until(asked: re.Match[str], now: time) -> str:
         hour = hour % 12 + 12 * (asked["half"] == "p")
     part = int({"half": "30", "quarter": "15", None: "0"}.get(asked["part"], asked["part"]))
     then = 60 * hour + int(asked["minute"] or 0) + part * (1 if asked["side"] in ("past", "after") else -1)
-    round_the_clock = 60 * (24 if asked["half"] or asked["name"] or hour > 12 else 12)
+    round_the_clock = 60 * (24 if asked["half"] or asked["name"] or hour not in range(1, 13) else 12)
     left = (then - 60 * now.hour - now.minute) % round_the_clock
     hours, minutes = (0, left) if asked["unit"] == "minutes" else divmod(left, 60)
     counts = {"hour": hours, "minute": minutes}

@@ -14,29 +14,14 @@ from ravestate.modules.skill.wildtalk.listening.tones import DARK
 from .conftest import Talk, seen
 
 LIGHT = [
-    "we played board games",
-    "my grandparents met on a train",
-    "i made dinner",
-    "i won a raffle",
-    "tell me a joke",
-    "i bought a plant",
-    "my phone is broken",
-    "we had a games night",
-]
+    "we played board games", "my grandparents met on a train", "i made dinner", "i won a raffle", "tell me a joke",
+    "i bought a plant", "my phone is broken", "we had a games night",
+]  # fmt: skip
 GRAVE = [
-    "he raped me",
-    "i was raped",
-    "my uncle touched me",
-    "grandpa passed away",
-    "he killed himself",
-    "i bought pills",
-    "i have cancer",
-    "my dog died",
-    "i want an abortion",
-    "i have nothing to live for",
-    "my brother hits me",
-    "we lost him",
-]
+    "he raped me", "i was raped", "my uncle touched me", "grandpa passed away", "he killed himself",
+    "i bought pills", "i have cancer", "my dog died", "i want an abortion", "i have nothing to live for",
+    "my brother hits me", "we lost him",
+]  # fmt: skip
 
 
 @pytest.mark.parametrize("remark", GRAVE)

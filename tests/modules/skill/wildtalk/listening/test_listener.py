@@ -1,19 +1,19 @@
-"""The contracts of the listening skill: it takes up the user's words, and does not repeat itself."""
+"""The listening skill answers what was said, and does not repeat itself. `tests/quality` measures how well it listens."""
 
 import itertools
 import re
 from collections.abc import Callable
 from dataclasses import replace
-from pathlib import Path
 from typing import Any
 
 import pytest
 
+from quality.measure import labelled
 from ravestate.language.examples import bundled
 from ravestate.language.matcher import bundled_matcher
 from ravestate.modules.skill.wildtalk.listening import Heard, State
 from ravestate.modules.skill.wildtalk.listening.bank import Bank
-from ravestate.modules.skill.wildtalk.listening.hearing import SURE, Hearing, asking_sentence, hear, likely, moment_of
+from ravestate.modules.skill.wildtalk.listening.hearing import hear, likely
 from ravestate.modules.skill.wildtalk.listening.material import Line, Moment, material
 from ravestate.modules.skill.wildtalk.listening.moment import roles_in
 from ravestate.modules.skill.wildtalk.listening.roles import roles_of
@@ -22,24 +22,14 @@ from ravestate.modules.skill.wildtalk.listening.state import Pending
 from .conftest import listener_with, seen
 
 PLAIN = [
-    "the bus came late",
-    "i bought some bread",
-    "my aunt has a garden",
-    "ok",
-    "we sat in the park",
-    "hm",
+    "the bus came late", "i bought some bread", "my aunt has a garden", "ok", "we sat in the park", "hm",
     "it was warm",
-]
+]  # fmt: skip
 ODD = [
-    "the clerk stamped a form",
-    "a man with a ladder stood there",
-    "he carried a bucket",
-    "then he whistled",
-    "the lamp swung",
-    "she pointed at a wall",
-    "they lifted the lid",
-]
-"""Statements without a highlight or a feeling."""
+    "the clerk stamped a form", "a man with a ladder stood there", "he carried a bucket", "then he whistled",
+    "the lamp swung", "she pointed at a wall", "they lifted the lid",
+]  # fmt: skip
+"""Statements of which no phrase is worth repeating, and that show no feeling."""
 CLAIMS = re.compile(
     r"\b(yesterday|last (?:week|night|year)) I\b|\bI (?:ate|drank|slept|drove|walked|went|visited)\b|\bmy (?:wife|husband|mother)\b"
 )
@@ -56,7 +46,7 @@ def all_lines() -> list[Line]:
 
 
 @pytest.mark.parametrize("seed", range(2))
-def test_the_listener_does_not_repeat_itself_within_a_dozen_answers(seed: int, begin: Callable[[int], Any]) -> None:
+def test_the_listener_says_nothing_twice_within_a_dozen_answers(seed: int, begin: Callable[[int], Any]) -> None:
     talk = begin(seed)
     said = [talk.say(text) for text in PLAIN * 6]
     for place, answer in enumerate(said):
@@ -69,7 +59,7 @@ def test_a_repeated_utterance_gets_different_answers(text: str, talk: Any) -> No
     assert all(first != second for first, second in itertools.pairwise(said))
 
 
-def test_the_listener_repeats_the_highlight_of_a_statement(begin: Callable[[int], Any]) -> None:
+def test_the_listener_takes_up_the_highlight_of_a_statement(begin: Callable[[int], Any]) -> None:
     for seed in range(6):
         said = begin(seed).say("he came home with two rusty lanterns")
         assert "two rusty lanterns" in said.lower(), said
@@ -106,7 +96,7 @@ def test_why_after_advice_gets_the_statement_before_the_advice_as_the_reason(
     ("text", "thing"),
     [("I love my old maps.", "your old maps"), ("she found your red ball", "my red ball"), ("he likes it lol", None)],
 )
-def test_the_role_thing_is_a_noun_phrase_from_the_agents_view(text: str, thing: str | None) -> None:
+def test_the_role_thing_is_a_noun_phrase_in_which_my_becomes_your(text: str, thing: str | None) -> None:
     assert roles_of(seen(text), "", None, material()).values.get("thing") == thing
 
 
@@ -168,27 +158,15 @@ def test_the_listener_mourns_only_after_a_word_for_death(text: str, begin: Calla
         assert talk.state.moment not in ("grief", "pet_died_child", "widowed", "old_friend_died")
 
 
-def test_after_a_sentence_that_breaks_off_the_listener_waits_for_the_rest(talk: Any) -> None:
+def test_after_an_unfinished_sentence_the_listener_waits(talk: Any) -> None:
     broken = {line.text for line in material().plain["broken"].groups["say"]}
     assert talk.say("wait she's") in broken
     assert talk.say("hold on my") in broken
 
 
-@pytest.mark.parametrize(
-    ("text", "moment"),
-    [
-        ("is there a neural network inside of you?", "has_language_model"),
-        ("are you just a script?", "is_scripted"),
-        ("did that make you laugh?", "can_you_laugh"),
-        ("are you storing everything I say?", "keeps_everything"),
-        ("woohoo!!!", "cheer"),
-        ("you might ask how my day was", "ask_my_day"),
-        ("why are you so sorry, she is fine", "your_mistake_hurts"),
-    ],
-)
-def test_words_about_the_agent_and_the_conversation_get_their_own_answers(text: str, moment: str, talk: Any) -> None:
-    said = talk.say(text)
-    assert said in {line.text for line in lines_of(material().moments[moment])}
+def test_an_answer_is_one_of_the_lines_of_its_situation(talk: Any) -> None:
+    said = talk.say("did that make you laugh?")
+    assert said in {line.text for line in lines_of(material().moments[talk.state.moment])}
 
 
 def test_a_sad_sentence_outweighs_a_farewell_that_it_resembles(talk: Any) -> None:
@@ -196,7 +174,7 @@ def test_a_sad_sentence_outweighs_a_farewell_that_it_resembles(talk: Any) -> Non
     assert talk.state.tone == "sad"
 
 
-def test_if_the_user_wants_no_questions_the_listener_asks_none(talk: Any) -> None:
+def test_after_a_wish_for_no_questions_the_listener_asks_none(talk: Any) -> None:
     talk.say("no more questions please")
     assert not any(talk.say(text).endswith("?") for text in PLAIN)
 
@@ -218,14 +196,14 @@ def test_the_listener_uses_the_right_pronoun_for_a_relative(
     assert not any(re.search(rf"\b{other}\b", answer) for answer in said for other in others)
 
 
-def test_a_pronoun_of_the_user_means_the_person_mentioned_before(talk: Any) -> None:
+def test_a_pronoun_stands_for_the_person_mentioned_before(talk: Any) -> None:
     talk.say("my grandfather is in hospital")
     talk.say("he broke his leg")
     assert talk.state.being is not None
     assert talk.state.being.text == "your grandfather"
 
 
-def test_a_sad_tone_lasts_beyond_one_utterance(begin: Callable[[int], Any]) -> None:
+def test_the_listener_keeps_a_sad_tone_for_a_while(begin: Callable[[int], Any]) -> None:
     for seed in range(5):
         talk = begin(seed)
         talk.say("my grandmother died yesterday")
@@ -233,7 +211,7 @@ def test_a_sad_tone_lasts_beyond_one_utterance(begin: Callable[[int], Any]) -> N
         assert "!" not in talk.say("she had a red chair")
 
 
-def test_the_listener_reacts_to_the_answer_to_its_question(begin: Callable[[int], Any]) -> None:
+def test_an_answer_to_the_listeners_question_gets_a_fitting_reply(begin: Callable[[int], Any]) -> None:
     replies: set[str] = set()
     for seed in range(30):
         talk = begin(seed)
@@ -244,13 +222,13 @@ def test_the_listener_reacts_to_the_answer_to_its_question(begin: Callable[[int]
     assert replies <= {"That's good. Nobody should be ill all alone.", "I'm glad she has company."}
 
 
-def test_a_short_answer_to_a_question_without_reactions_gets_a_general_reply(talk: Any) -> None:
+def test_a_short_answer_to_any_question_is_acknowledged(talk: Any) -> None:
     talk.state = replace(talk.state, pending=Pending("Who makes the tea?"), said=("Who makes the tea?",))
     took = [line.text for line in lines_of(material().plain["took"])]
     assert talk.say("my aunt") in took
 
 
-def test_the_listener_seldom_asks_three_questions_in_a_row(begin: Callable[[int], Any]) -> None:
+def test_the_listener_seldom_asks_three_times_in_a_row(begin: Callable[[int], Any]) -> None:
     rows = 0
     for seed in range(3):
         talk = begin(seed)
@@ -295,26 +273,14 @@ def test_the_answer_to_an_unknown_fact_names_its_subject(text: str, named: str, 
     assert all(named in begin(seed).say(text).lower() for seed in range(4))
 
 
-@pytest.mark.parametrize(
-    ("text", "kind", "area"),
-    [
-        ("what should I cook for my aunt", "recommend", "food"),
-        ("how can I get fitter for the race", "how_to", "sport"),
-        ("is it wrong to miss her still", "okay", "sadness"),
-        ("what if my speech is too long", "what_if", "nerves"),
-    ],
-)
-def test_a_question_is_answered_by_its_kind_and_its_area_of_life(
-    text: str, kind: str, area: str, begin: Callable[[int], Any]
-) -> None:
-    asked = hear(material(), Heard(text, seen(text)), State()).asked
-    assert asked is not None
-    assert (asked.kind, "" if asked.area is None else asked.area.name) == (kind, area)
-    heard = hear(material(), Heard(text, seen(text)), State())
-    lines = [line for group in asked.lines(material(), "", heard.asking) for line in group]
-    lines += [line for one in heard.near for group in one.moment.lines("say") for line in group]
-    known = [line.text for line in lines if line.roles <= heard.roles.values.keys()]
-    assert begin(2).say(text) in map(heard.roles.fill, known)
+def test_a_question_is_answered_by_its_kind_and_its_area_of_life(begin: Callable[[int], Any]) -> None:
+    for text, _ in labelled("asked_rows"):
+        heard = hear(material(), Heard(text, seen(text)), State())
+        assert heard.asked is not None
+        lines = [line for group in heard.asked.lines(material(), "", heard.asking) for line in group]
+        lines += [line for one in heard.near for group in one.moment.lines("say") for line in group]
+        known = [line.text for line in lines if line.roles <= heard.roles.values.keys()]
+        assert begin(2).say(text) in map(heard.roles.fill, known), text
 
 
 @pytest.mark.parametrize(
@@ -332,7 +298,7 @@ def test_the_listener_chooses_one_of_two_options(
         assert any(option.lower() in begin(seed).say(text).lower() for option in options)
 
 
-def test_the_listener_says_words_on_request(talk: Any) -> None:
+def test_the_listener_does_what_can_be_done_in_words(talk: Any) -> None:
     assert "pickle" in talk.say("say the word pickle").lower()
     assert "pickle" in talk.say("say that again").lower()
     assert talk.say("name three animals").count(",") == 1
@@ -382,49 +348,9 @@ def test_every_act_and_feeling_has_an_answer() -> None:
     assert acts - phrases.acts.keys() <= {"joke", "song", "story", "play", "repeat", "wish"}
 
 
-def test_the_tone_of_most_utterances_in_a_list_is_right(begin: Callable[[int], Any]) -> None:
-    rows = [line.split("\t") for line in (Path(__file__).parent / "tones.tsv").read_text().splitlines()[1:]]
-    wrong: list[str] = []
-    for text, tone in rows:
-        talk = begin(0)
-        talk.say(text)
-        if (talk.state.tone or "-") != tone:
-            wrong.append(f"{text}: {talk.state.tone or '-'}, not {tone}")
-    assert len(rows) == 80
-    assert len(wrong) <= 0.35 * len(rows), wrong
-
-
-@pytest.mark.parametrize(
-    ("text", "group"),
-    [
-        ("is it silly to hope for snow", "okay"),
-        ("and so, will it be very loud?", "predict"),
-    ],
-)
-def test_a_question_for_an_opinion_gets_an_opinion_and_not_i_do_not_know(
-    text: str, group: str, begin: Callable[[int], Any]
-) -> None:
-    roles = hear(material(), Heard(text, seen(text)), State()).roles
-    lines = {roles.fill(line.text) for line in lines_of(material().asked[group]) if line.roles <= roles.values.keys()}
-    assert {begin(seed).say(text) for seed in range(5)} <= lines
-
-
 @pytest.mark.parametrize("text", ["I only wondered whether the light is still on", "no eggs left in the fridge again"])
 def test_a_remark_is_neither_a_question_nor_a_correction(text: str, begin: Callable[[int], Any]) -> None:
     excuses = {
         line.text for name in ("fact", "recall", "apologise", "ask") for line in lines_of(material().replies[name])
     }
     assert not {begin(seed).say(text) for seed in range(5)} & excuses
-
-
-def test_most_situations_recognised_in_unseen_utterances_suit_the_right_move() -> None:
-    rows = (Path(__file__).parents[4] / "quality" / "moves_rows.tsv").read_text(encoding="utf-8").splitlines()[1:]
-    fitting: list[bool] = []
-    for text, move in (line.split("\t") for line in rows):
-        read = seen(text)
-        hearing = Hearing(set(), moves=likely(material(), read))
-        found, _, score = moment_of(material(), read, hearing, asking_sentence(read))
-        if found is not None and score >= SURE:
-            fitting.append(move in found.moves)
-    assert len(fitting) >= 30
-    assert sum(fitting) >= 0.8 * len(fitting)
