@@ -8,8 +8,6 @@ import ravestate as rs
 from ravestate.modules import interloc, rawio
 from ravestate.modules.platform.chats import ChatSettings, connect
 
-from .serving import serve
-
 
 class Settings(ChatSettings):
     """The settings of matrixio: the account, and the people whom the agent answers."""
@@ -24,7 +22,7 @@ class Settings(ChatSettings):
     """An access token, in place of the password. Set it as ``RAVESTATE_MATRIXIO_TOKEN``."""
 
 
-module = rs.Module("matrixio", requires=(rawio, interloc), settings=Settings, serve=serve)
+module = rs.Module("matrixio", requires=(rawio, interloc), settings=Settings)
 
 chat, command = connect(module)
 """The slot with the chat of this context, and the signal for the commands ``!start`` and ``!help``."""

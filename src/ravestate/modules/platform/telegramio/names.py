@@ -8,8 +8,6 @@ import ravestate as rs
 from ravestate.modules import interloc, rawio
 from ravestate.modules.platform.chats import ChatSettings, connect
 
-from .serving import serve
-
 
 class Settings(ChatSettings):
     """The settings of telegramio: the bot, the people whom it answers, and the way to get messages."""
@@ -30,7 +28,7 @@ class Settings(ChatSettings):
     """Whether a private chat shows an answer while it grows."""
 
 
-module = rs.Module("telegramio", requires=(rawio, interloc), settings=Settings, serve=serve)
+module = rs.Module("telegramio", requires=(rawio, interloc), settings=Settings)
 
 chat, command = connect(module)
 """The slot with the chat of this context, and the signal for the commands ``/start`` and ``/help``."""
