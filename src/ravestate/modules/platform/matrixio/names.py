@@ -6,7 +6,7 @@ import pydantic
 
 import ravestate as rs
 from ravestate.modules import interloc, rawio
-from ravestate.modules.platform.chats import ChatSettings, connect
+from ravestate.modules.platform.chats import Chat, ChatSettings, Command
 
 
 class Settings(ChatSettings):
@@ -24,5 +24,8 @@ class Settings(ChatSettings):
 
 module = rs.Module("matrixio", requires=(rawio, interloc), settings=Settings)
 
-chat, command = connect(module)
-"""The slot with the chat of this context, and the signal for the commands ``!start`` and ``!help``."""
+chat: rs.Slot[Chat | None] = module.slot("chat", None)
+"""The chat of this context."""
+
+command: rs.Signal[Command] = module.signal("command", payload=Command, input=True)
+"""A user has given the command ``!start`` or ``!help``."""
