@@ -11,11 +11,15 @@ import subprocess
 import sys
 from collections.abc import Iterable, Iterator
 from graphlib import TopologicalSorter
+from importlib import import_module
+from importlib.util import module_from_spec, spec_from_file_location
 from pathlib import Path
 from typing import NamedTuple
 
 import pytest
 
+from ravestate.declare.module import Module
+from ravestate.modules import BUILT_IN
 from ravestate.policy.components import components
 
 ROOT = Path(__file__).parents[2]
@@ -130,6 +134,22 @@ def test_all_modules_are_folders_with_the_same_files() -> None:
         if not (place / wanted).is_file()
     ]
     assert not missing, "\n".join(missing)
+
+
+@pytest.mark.parametrize("name", BUILT_IN)
+def test_a_module_declares_its_names_before_its_rules(name: str, monkeypatch: pytest.MonkeyPatch) -> None:
+    """`names.py` declares all signals and slots and no rule. A module has `rules.py` if, and only if, it has rules."""
+    package = import_module(f"ravestate.modules.{BUILT_IN[name]}.{name}")
+    place = SOURCE / "modules" / BUILT_IN[name] / name
+    spec = spec_from_file_location(f"{package.__name__}.names_alone", place / "names.py")
+    assert spec is not None and spec.loader is not None
+    names = module_from_spec(spec)
+    monkeypatch.setitem(sys.modules, spec.name, names)
+    spec.loader.exec_module(names)
+    module: Module = package.module
+    assert list(map(str, names.module.signals + names.module.slots)) == list(map(str, module.signals + module.slots))
+    assert names.module.rules == []
+    assert bool(module.rules) == (place / "rules.py").is_file()
 
 
 def test_imports_form_no_circle() -> None:
