@@ -142,6 +142,12 @@ def test_one_error_has_all_faults_of_the_settings() -> None:
     assert "setting voice.sped: module 'voice' has no such setting; did you mean 'speed'?" in text
 
 
+def test_faults_in_the_environment_are_reported_together() -> None:
+    found = faults([voice], {}, {"RAVESTATE_VOICE_WORDS": "a,b", "RAVESTATE_VOICE_SPEED": "fast"})
+    assert "setting voice.words = 'a,b': Input should be a valid tuple" in found
+    assert len(found) == 2 and found[0].startswith("setting voice.speed = 'fast': Input should be a valid number")
+
+
 def test_the_error_about_a_missing_setting_says_how_to_give_it() -> None:
     (fault,) = faults([my_server], {"my-server": {"keys": ["s3cret"]}})
     assert fault.startswith("setting my-server.address is missing: write --set my-server.address=...")

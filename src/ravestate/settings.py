@@ -12,7 +12,6 @@ from collections.abc import Callable, Iterable, Mapping
 from typing import Any, cast, get_args
 
 import pydantic
-from pydantic._internal._model_construction import ModelMetaclass
 
 from ravestate.declare.module import Module
 from ravestate.declare.settings import SettingRef
@@ -22,7 +21,7 @@ from ravestate.errors import DeclarationError, DeclarationErrors, nearest
 TEXT = (str, pydantic.SecretStr)
 
 
-class _SettingsMeta(ModelMetaclass):
+class _SettingsMeta(type(pydantic.BaseModel)):
     """A metaclass that makes ``MySettings.field`` a reference to the setting, for ages and weights in rules."""
 
     def __getattr__(cls, item: str) -> Any:

@@ -48,6 +48,15 @@ def test_a_module_holds_its_declarations_and_nothing_else(demo: rs.Module) -> No
     assert repr(demo) == "<module demo>"
 
 
+def test_a_platform_declares_one_server(demo: rs.Module) -> None:
+    async def serve(agent: object) -> None: ...
+
+    assert demo.serve is None
+    assert demo.server(serve) is serve and demo.serve is serve
+    refused("module demo", lambda: demo.server(serve))
+    refused("has a server already", lambda: rs.Module("other", serve=serve).server(serve))
+
+
 def test_every_declaration_has_the_file_and_line_where_it_was_made(demo: rs.Module) -> None:
     for thing in (demo, demo.signal("a"), demo.slot("b"), demo.flag("c"), demo.collection("d")):
         assert re.fullmatch(f"{HERE}:[0-9]+", thing.origin)

@@ -12,7 +12,7 @@ from ravestate.policy.compile import compile_policy
 def test_a_policy_can_be_drawn_in_each_format(format: str, start: str) -> None:
     policy = compile_policy(games())
     text = policy.diagram(format)  # type: ignore[arg-type]
-    assert text.startswith(start) and text == draw(policy, format)
+    assert text.startswith(start) and text == draw(policy.rules.values(), format)
     for name in ("OfferGames", "input:changed", "about_agent", "face"):
         assert name in text
 
@@ -24,7 +24,7 @@ def test_svg_is_the_default() -> None:
 
 def test_the_message_for_an_unknown_format_lists_the_known_formats() -> None:
     with pytest.raises(ValueError, match="'png' is unknown: write one of 'svg', 'dot', 'mermaid'"):
-        draw(compile_policy(games()), "png")
+        draw(compile_policy(games()).rules.values(), "png")
     assert list(FORMATS) == ["svg", "dot", "mermaid"]
 
 
@@ -39,4 +39,6 @@ def test_the_diagram_includes_the_required_modules() -> None:
     rule(base, "sound", ping)
     user = Module("user", requires=[base])
     rule(user, "hear", ping)
-    assert {"sound", "hear"} <= set(draw(compile_policy(user), "mermaid").replace('"', "<br/>").split("<br/>"))
+    assert {"sound", "hear"} <= set(
+        draw(compile_policy(user).rules.values(), "mermaid").replace('"', "<br/>").split("<br/>")
+    )

@@ -68,7 +68,7 @@ def test_an_added_rule_that_never_runs_changes_nothing(world: World, steps: int)
     more = policy.with_rule(deaf)
     for index, clause in policy.clause_plans.items():
         same = more.clause_plans[index]
-        same.base, same.utility = clause.base, clause.utility
+        same.base, same.utility, same.unrivalled = clause.base, clause.utility, clause.unrivalled
     for old, new in zip(policy.signal_plans, more.signal_plans, strict=True):
         new.conflict_sets = tuple(
             tuple(more.clause_plans[clause.index] for clause in clauses) for clauses in old.conflict_sets

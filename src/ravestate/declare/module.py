@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Coroutine, Iterable
 from types import ModuleType
-from typing import Any, ParamSpec, TypeVar, Unpack, cast, overload
+from typing import Any, ParamSpec, TypeAlias, TypeVar, Unpack, cast, overload
 
 from ravestate.declare import arguments
 from ravestate.declare.arguments import check_name, check_options, condition, keywords, number, several
@@ -20,6 +20,11 @@ T = TypeVar("T")
 P = ParamSpec("P")
 R = TypeVar("R")
 
+Server: TypeAlias = Callable[[Any], Coroutine[Any, Any, None]]
+"""A function that serves an `Agent` to many users."""
+
+S = TypeVar("S", bound=Server)
+
 ANY_SLOT: type[Slot[Any]] = Slot
 ANY_SIGNAL: type[Signal[Any]] = Signal
 
@@ -32,8 +37,7 @@ class Module:
         requires: Modules whose signals and slots this module uses: `Module` values, or Python modules that contain one
             (``from ravestate.modules import rawio``).
         settings: A subclass of ``rs.Settings`` with the values that a user may configure.
-        serve: An async function, for platforms that serve many users. ``rs.run`` calls it with the `Agent`
-            instead of running one context. The function makes a context for each user, and ends when it is cancelled.
+        serve: An async function, for platforms that serve many users. See `server`, which declares it afterwards.
 
     Example:
         >>> import ravestate as rs
@@ -55,7 +59,7 @@ class Module:
         *,
         requires: Iterable[Module | ModuleType] = (),
         settings: type[Any] | None = None,
-        serve: Callable[[Any], Coroutine[Any, Any, None]] | None = None,
+        serve: Server | None = None,
     ) -> None:
         check_name(name, "Module")
         self.name = name
@@ -208,6 +212,20 @@ class Module:
             return rule
 
         return decorate
+
+    def server(self, function: S) -> S:
+        """Make an async function the server of a platform with many users: ``@module.server`` above the function.
+
+        ``rs.run`` calls the function with the `Agent` instead of running one context. The function makes a context for
+        each user, and ends when it is cancelled.
+
+        Raises:
+            DeclarationError: The module has a server already.
+        """
+        if self.serve is not None:
+            raise DeclarationError(f"module {self.name} ({self.origin}) has a server already: {self.serve!r}; keep one")
+        self.serve = function
+        return function
 
     def __repr__(self) -> str:
         return f"<module {self.name}>"

@@ -6,17 +6,15 @@ and `mermaid` write text.
 
 from __future__ import annotations
 
-from collections.abc import Callable
-from typing import TYPE_CHECKING
+from collections.abc import Callable, Iterable
+from typing import Any
 
+from ravestate.declare.rule import Rule
 from ravestate.draw.build import build
 from ravestate.draw.dot import dot
 from ravestate.draw.graph import Diagram
 from ravestate.draw.mermaid import mermaid
 from ravestate.draw.svg import svg
-
-if TYPE_CHECKING:
-    from ravestate.policy.policy import Policy
 
 __all__ = ["FORMATS", "draw"]
 
@@ -24,9 +22,9 @@ FORMATS: dict[str, Callable[[Diagram], str]] = {"svg": svg, "dot": dot, "mermaid
 """Format → the function that writes a diagram in this format."""
 
 
-def draw(policy: Policy, format: str = "svg") -> str:
-    """Return the diagram of a policy in one of `FORMATS`; for any other format, raise a ValueError."""
+def draw(rules: Iterable[Rule[Any, Any]], format: str = "svg") -> str:
+    """Return the diagram of rules in one of `FORMATS`; for any other format, raise a ValueError."""
     writer = FORMATS.get(format)
     if writer is None:
         raise ValueError(f"diagram format {format!r} is unknown: write one of {', '.join(map(repr, FORMATS))}")
-    return writer(build(policy.rules.values()))
+    return writer(build(rules))

@@ -23,7 +23,7 @@ passes through the parts in this order:
 5. *End.* `Runs.finish` settles a run by the table `OUTCOMES`.
 6. *Wake.* A change that may lift a refusal marks a causal group in `State.dirty`, or a *hope* in `State.stirred`, or
    puts the activation into `State.asking`. A hope is something outside the activation's groups that may lift its
-   refusal (``refusal.py``). The next round of consent begins with `Waits.wake`, which returns the activations that ask
+   refusal (``activation.py``). The next round of consent begins with `Waits.wake`, which returns the activations that ask
    again.
 
 Deadlines go through the same steps. `Engine.advance` finds the deadlines that are due, and the table `DUE`

@@ -23,10 +23,8 @@ from ravestate.engine.group import NOTHING
 from ravestate.errors import EngineError
 
 if TYPE_CHECKING:
-    from ravestate.engine.free import Place
     from ravestate.engine.group import Group
-    from ravestate.engine.loops import Lineage
-    from ravestate.engine.refusal import Refusal
+    from ravestate.engine.lineage import Lineage
     from ravestate.engine.spike import Spike
     from ravestate.policy.model import Clause, Need
 
@@ -107,7 +105,7 @@ class Activation:
         place: Its place in the queue of ``free.py``; None if it is not there, or is still in the queue's batch.
         patience_ends: Key: a group in which other activations wait for this one; value: the time at which this
             activation's patience ends in that group (seconds; L16).
-        refusal: The reasons for which it waits (``refusal.py``); None unless it waits.
+        refusal: The reasons for which it waits; None unless it waits.
         stands_on: The non-detached spikes of the run: the parents of the spikes that it raises.
         groups: The groups in which the run took its slots when it began. They may have merged since.
         wrote: Whether the run has written a slot.
@@ -228,6 +226,79 @@ class Activation:
         return f"{self.clause}@{self.id}"
 
 
+Place = tuple[int, int, int, Activation]
+"""The place of an activation in the queue of ``free.py``."""
+
+
 def by_age(activation: Activation) -> int:
     """Return the sort key for activations, the oldest first."""
     return activation.id
+
+
+RULE: Final = 0
+OUTSIDE: Final = 1
+SEEN: Final = 2
+"""Kinds of *hope*. A hope is a thing outside an activation's groups whose change may lift the activation's refusal.
+
+`RULE`: the activations of a rule in other groups. `OUTSIDE`: the live rules of other groups that may raise a signal.
+`SEEN`: the next spike of a signal, at which a detached need looks.
+"""
+
+
+class Refusal:
+    """The reasons for which an activation must wait. If `names` is empty, the activation has consent.
+
+    Attributes:
+        names: Key: the name of a rule that the activation waits for; value: the best of that rule's clauses that are
+            rivals.
+        blockers: The live activations on whose progress the refusal depends. `explain` does not show them.
+        sure: For each rival that work in progress will make ready or rule out: the activations that do this work.
+        taken: Whether a run has taken one of the activation's slots.
+        in_doubt: Whether a rival may never be ready, so that only the end of its patience ends the wait.
+        hopes: The hopes of the activation → a count for each (`Horizon.hopes`).
+        interests: The groups whose changes may lift the refusal.
+        leader: The activation that this one follows (``leaders.py``), or None.
+        told: The names of rules in the trace's record of this wait; empty without a tracer.
+        recheck: The earliest time (seconds) at which the refusal may end without any event: because a rule recovers,
+            because a spike becomes too old, or because the patience of a rival without an activation ends.
+    """
+
+    __slots__ = ("blockers", "sure", "hopes", "interests", "leader", "names", "in_doubt", "recheck", "taken", "told")
+
+    def __init__(self) -> None:
+        self.interests: dict[Group, None] = {}
+        self.hopes: dict[tuple[int, int], int] = {}
+        self.names: dict[str, Clause] = {}
+        self.blockers: dict[Activation, None] = {}
+        self.sure: list[tuple[Activation, ...]] = []
+        self.leader: Activation | None = None
+        self.taken = False
+        self.in_doubt = False
+        self.recheck = NEVER
+        self.told: tuple[str, ...] = ()
+
+    def name(self, rival: Clause) -> None:
+        """Record that the activation waits for a rival."""
+        known = self.names.get(rival.rule.name)
+        if known is None or known.base < rival.base:
+            self.names[rival.rule.name] = rival
+
+    @property
+    def all_names(self) -> dict[str, Clause]:
+        """The names of the rules that the activation waits for, and those that its leader waits for."""
+        leader = self.leader
+        if leader is None or leader.refusal is None:
+            return self.names
+        return {**leader.refusal.all_names, **self.names}
+
+    @property
+    def bounded(self) -> bool:
+        """Whether the wait is sure to end: when a run frees its slot, or when a rival's patience ends."""
+        return self.taken or self.in_doubt
+
+    def __bool__(self) -> bool:
+        return bool(self.names)
+
+
+CONSENT: Final = Refusal()
+"""The empty refusal: the activation has consent."""

@@ -20,15 +20,13 @@ from collections.abc import Sequence
 from typing import Any
 
 from ravestate.engine import trace
-from ravestate.engine.activation import NEVER, RUNNING, Activation, by_age
+from ravestate.engine.activation import CONSENT, NEVER, RUNNING, Activation, Refusal, by_age
 from ravestate.engine.deadlines import PATIENCE
 from ravestate.engine.group import NOTHING, Group
 from ravestate.engine.halves import Halves
 from ravestate.engine.holdings import Holdings
 from ravestate.engine.horizon import NO, SURE, Horizon
 from ravestate.engine.leaders import Leaders
-from ravestate.engine.refusal import CONSENT, Refusal
-from ravestate.engine.roster import causers, writers
 from ravestate.engine.spike import Spike
 from ravestate.engine.state import State
 from ravestate.engine.stuck import Stuck
@@ -251,9 +249,9 @@ class Consent:
                 if bisect_left(half.ranks, (-first.base, first.index)) < bisect_left(half.ranks, limit):
                     return True
             rivals: dict[Clause, None] = {}
-            for member in writers(group, first.rule.slots, state.causes):
+            for member in group.writers(first.rule.slots, state.causes):
                 rivals[member.clause] = None
-            for rule in causers(group, first.rule.slots, state.causes):
+            for rule in group.causers(first.rule.slots, state.causes):
                 for theirs in state.causes.downstream(rule):
                     if theirs.base < last.base:
                         break  # the best clauses come first
@@ -324,7 +322,7 @@ class Consent:
         clause = activation.clause
         slots = clause.rule.slotset
         for group in activation.firm_groups():
-            for other in writers(group, clause.rule.slots, self.state.causes):
+            for other in group.writers(clause.rule.slots, self.state.causes):
                 theirs = other.clause
                 if (
                     theirs is not clause
@@ -354,11 +352,11 @@ class Consent:
         found: dict[Clause, list[Activation]] = {}
         causes = self.state.causes
         alone = group.count == 1  # the activation is the only member
-        for member in () if alone else writers(group, clause.rule.slots, causes):
+        for member in () if alone else group.writers(clause.rule.slots, causes):
             theirs = member.clause
             if theirs is not clause and not theirs.rule.slotset.isdisjoint(slots):
                 found.setdefault(theirs, []).append(member)
-        for rule in (clause.rule,) if alone else causers(group, clause.rule.slots, causes):
+        for rule in (clause.rule,) if alone else group.causers(clause.rule.slots, causes):
             for theirs in causes.downstream(rule):
                 if theirs.base < worth:
                     break  # the best clauses come first, and a cooldown only lowers a utility

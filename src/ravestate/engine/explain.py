@@ -9,9 +9,8 @@ from collections.abc import Iterable, Iterator, Sequence
 from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
-from ravestate.engine.activation import GATHERING, NAMES, NEVER, READY, RUNNING, WAITING, Activation, by_age
+from ravestate.engine.activation import GATHERING, NAMES, NEVER, READY, RUNNING, WAITING, Activation, Refusal, by_age
 from ravestate.engine.reasons import LossReason, Outcome, PassReason, StopReason
-from ravestate.engine.refusal import Refusal
 from ravestate.engine.state import State
 from ravestate.engine.trace import Born, GaveUp, Held, Passed, Pressed, Record, Settled, Started, Told, Waits
 from ravestate.engine.waits import patience_of_rivals

@@ -7,8 +7,6 @@ from typing import Any
 from ravestate.engine.activation import READY, Activation
 from ravestate.engine.line import Line
 
-Place = tuple[int, int, int, Activation]
-
 
 class Free(Line):
     """A queue of ready activations. Most join at its end. An activation whose spikes have changed may join anywhere.

@@ -2,13 +2,16 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterable, Mapping
 from typing import TYPE_CHECKING, Any, Final
 
+from ravestate.engine.roster import FEW, Roster
 from ravestate.errors import EngineError
+from ravestate.policy.causes import Causes
+from ravestate.policy.model import RulePlan
 
 if TYPE_CHECKING:
     from ravestate.engine.activation import Activation
-    from ravestate.engine.roster import Roster
     from ravestate.engine.spike import Spike
 
 
@@ -73,7 +76,7 @@ class Group:
         self.interested: dict[Activation, None] = NOTHING
         self.entries: dict[Spike, None] = NOTHING
         self.patience_ends: dict[int, float] | None = None
-        self.roster: Roster | None = None
+        self.roster: Roster[Activation] | None = None
         self.answers: dict[int, tuple[str, int]] = NOTHING
 
     def root(self) -> Group:
@@ -96,6 +99,31 @@ class Group:
         """The number of members."""
         return len(self._others) + (self._member is not None)
 
+    def writers(self, slots: tuple[int, ...], causes: Causes) -> Iterable[Activation]:
+        """Return the members that may write one of the slots, the first to join first. In a small group, return all."""
+        return self.members if self.count <= FEW else self._roster(causes).writers(slots)
+
+    def causers(self, slots: tuple[int, ...], causes: Causes) -> Iterable[RulePlan]:
+        """Return the rules of the members that may trigger a writer of one of the slots. In a small group, return all."""
+        if self.count <= FEW:
+            return dict.fromkeys([member.clause.rule for member in self.members])
+        return self._roster(causes).causers(slots)
+
+    def by_rule(self, causes: Causes) -> Mapping[int, Mapping[Activation, None]]:
+        """Return the members, by the number of their rule."""
+        if self.count > FEW:
+            return self._roster(causes).rules
+        found: dict[int, dict[Activation, None]] = {}
+        for member in self.members:
+            found.setdefault(member.clause.rule.index, {})[member] = None
+        return found
+
+    def _roster(self, causes: Causes) -> Roster[Activation]:
+        roster = self.roster
+        if roster is None:
+            roster = self.roster = Roster(causes, [(member, member.clause.rule) for member in self.members])
+        return roster
+
     def has(self, activation: Activation) -> bool:
         """Return whether an activation is a member."""
         return activation is self._member or activation in self._others
@@ -113,7 +141,7 @@ class Group:
         else:
             self._others[activation] = None
         if self.roster is not None:
-            self.roster.enter(activation)
+            self.roster.enter(activation, activation.clause.rule)
 
     def part(self, activation: Activation) -> None:
         """Record that an activation no longer has a non-detached spike of the group."""
@@ -125,7 +153,7 @@ class Group:
             return
         if self.roster is not None:
             if self.count:
-                self.roster.leave(activation)
+                self.roster.leave(activation, activation.clause.rule)
             else:
                 self.roster = None
 

@@ -28,10 +28,8 @@ from __future__ import annotations
 from collections.abc import Generator, Mapping, Sequence, Set
 from typing import Any, Final
 
-from ravestate.engine.activation import ENDED, GATHERING, NEVER, RUNNING, Activation
+from ravestate.engine.activation import ENDED, GATHERING, NEVER, OUTSIDE, RULE, RUNNING, SEEN, Activation
 from ravestate.engine.group import Group
-from ravestate.engine.refusal import OUTSIDE, RULE, SEEN
-from ravestate.engine.roster import by_rule
 from ravestate.engine.state import State
 from ravestate.engine.stuck import Stuck
 from ravestate.policy.model import Clause, Need
@@ -331,7 +329,7 @@ class Horizon:
         found = self._by_rule.get(group)
         if found is None:
             self.visited[group] = None
-            found = self._by_rule[group] = by_rule(group, self.state.causes)
+            found = self._by_rule[group] = group.by_rule(self.state.causes)
         return found
 
     def _outside(self, need: Need, group: Group) -> bool:

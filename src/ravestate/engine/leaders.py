@@ -15,10 +15,8 @@ can lead only if its effects help no rule that writes a slot.
 
 from __future__ import annotations
 
-from ravestate.engine import roster
-from ravestate.engine.activation import GATHERING, RUNNING, WAITING, Activation
+from ravestate.engine.activation import GATHERING, RUNNING, WAITING, Activation, Refusal
 from ravestate.engine.group import Group
-from ravestate.engine.refusal import Refusal
 from ravestate.engine.state import State
 from ravestate.policy.model import Clause
 
@@ -87,12 +85,12 @@ class Leaders:
         state, first = self.state, leader.activation.clause
         causes, slots = state.causes, first.rule.slots
         found: dict[Clause, None] = {}
-        for member in roster.writers(group, slots, causes):
+        for member in group.writers(slots, causes):
             if member.state == GATHERING or (
                 member.state < RUNNING and not causes.helpful.isdisjoint(member.clause.rule.raises)
             ):
                 found[member.clause] = None
-        for rule in roster.causers(group, slots, causes):
+        for rule in group.causers(slots, causes):
             found.update(dict.fromkeys(causes.downstream(rule)))
         for spike in group.entries:
             for half in state.halves_of(spike):

@@ -15,9 +15,10 @@ from __future__ import annotations
 from collections import deque
 from collections.abc import Sequence
 from operator import attrgetter
-from typing import TYPE_CHECKING, Final, NamedTuple
+from typing import TYPE_CHECKING, Final
 
 from ravestate.engine.activation import READY
+from ravestate.engine.lineage import Lineage, Loop
 
 if TYPE_CHECKING:
     from ravestate.engine.activation import Activation
@@ -29,30 +30,6 @@ MANY: Final = 500
 
 TURNS: Final = 500
 """After this many turns in one instant, the engine defers turns. `MANY` and `TURNS` add up to the 1,000 runs of L23."""
-
-
-class Loop:
-    """A run and all the runs that it has led to within an instant.
-
-    Attributes:
-        instant: The number of the instant.
-        turns: How many of the runs were further turns of the loop.
-        rules: The rules that had these further turns.
-    """
-
-    __slots__ = ("instant", "rules", "turns")
-
-    def __init__(self, instant: int) -> None:
-        self.instant = instant
-        self.turns = 0
-        self.rules: dict[RulePlan, None] = {}
-
-
-class Lineage(NamedTuple):
-    """The origin of a spike or a run: the numbers of the rules that led to it within an instant, and its loop."""
-
-    rules: frozenset[int]
-    loop: Loop
 
 
 class Loops:

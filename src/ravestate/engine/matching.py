@@ -8,7 +8,7 @@ from __future__ import annotations
 from typing import Any
 
 from ravestate.engine import trace
-from ravestate.engine.activation import GATHERING, RUNNING, Activation
+from ravestate.engine.activation import GATHERING, RUNNING, SEEN, Activation
 from ravestate.engine.conflict_sets import ConflictSets
 from ravestate.engine.deadlines import LOOK
 from ravestate.engine.effects import Spiked
@@ -16,8 +16,8 @@ from ravestate.engine.entries import Entries
 from ravestate.engine.group import NOTHING, Group
 from ravestate.engine.halves import Halves
 from ravestate.engine.holdings import Holdings
-from ravestate.engine.loops import MANY, Lineage
-from ravestate.engine.refusal import SEEN
+from ravestate.engine.lineage import Lineage
+from ravestate.engine.loops import MANY
 from ravestate.engine.runs import Runs
 from ravestate.engine.spike import Spike
 from ravestate.engine.state import State

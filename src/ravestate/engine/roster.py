@@ -7,20 +7,20 @@ larger group at the first such question. From then on, `Group.join` and `Group.p
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Mapping
-from typing import Final
+from collections.abc import Iterable
+from typing import Final, Generic, TypeVar
 
-from ravestate.engine.activation import Activation
-from ravestate.engine.group import Group
 from ravestate.policy.causes import Causes
 from ravestate.policy.model import RulePlan
+
+Member = TypeVar("Member")
 
 FEW: Final = 8
 """A group with at most this many members needs no roster."""
 
 
-class Roster:
-    """The members of a causal group.
+class Roster(Generic[Member]):
+    """The members of a causal group: activations. This class uses only their rules.
 
     Attributes:
         rules: Number of a rule → its activations in the group, the first to join first.
@@ -28,43 +28,41 @@ class Roster:
 
     __slots__ = ("_causers", "_causes", "_count", "_places", "_writers", "rules")
 
-    def __init__(self, causes: Causes, members: Iterable[Activation]) -> None:
+    def __init__(self, causes: Causes, members: Iterable[tuple[Member, RulePlan]]) -> None:
         self._causes = causes
-        self.rules: dict[int, dict[Activation, None]] = {}
-        self._writers: dict[int, dict[Activation, None]] = {}  # slot → the members that write it
+        self.rules: dict[int, dict[Member, None]] = {}
+        self._writers: dict[int, dict[Member, None]] = {}  # slot → the members that write it
         self._causers: dict[int, dict[int, None]] = {}  # slot → the rules of members that may trigger its writers
-        self._places: dict[Activation, int] = {}  # member → its place in the order of joining
+        self._places: dict[Member, int] = {}  # member → its place in the order of joining
         self._count = 0
-        for member in members:
-            self.enter(member)
+        for member, rule in members:
+            self.enter(member, rule)
 
-    def enter(self, activation: Activation) -> None:
-        """Add a new member."""
-        rule = activation.clause.rule
+    def enter(self, member: Member, rule: RulePlan) -> None:
+        """Add a new member, an activation of `rule`."""
         self._count += 1
-        self._places[activation] = self._count
+        self._places[member] = self._count
         for slot in rule.slots:
-            self._writers.setdefault(slot, {})[activation] = None
+            self._writers.setdefault(slot, {})[member] = None
         same = self.rules.setdefault(rule.index, {})
         if not same:
             for slot in self._causes.slots_behind(rule):
                 self._causers.setdefault(slot, {})[rule.index] = None
-        same[activation] = None
+        same[member] = None
 
-    def leave(self, activation: Activation) -> None:
-        """Remove a member."""
-        rule = activation.clause.rule
-        del self._places[activation]
+    def leave(self, member: Member, rule: RulePlan) -> None:
+        """Remove a member, an activation of `rule`."""
+        del self._places[member]
         for slot in rule.slots:
-            del self._writers[slot][activation]
+            del self._writers[slot][member]
         same = self.rules[rule.index]
-        del same[activation]
+        del same[member]
         if not same:
             del self.rules[rule.index]
             for slot in self._causes.slots_behind(self._causes.rules[rule.index]):
                 del self._causers[slot][rule.index]
 
-    def writers(self, slots: tuple[int, ...]) -> Iterable[Activation]:
+    def writers(self, slots: tuple[int, ...]) -> Iterable[Member]:
         """Return the members that write one of the slots, the first to join first."""
         if len(slots) == 1:
             return self._writers.get(slots[0], {})
@@ -75,32 +73,3 @@ class Roster:
         """Return the rules of the members that may trigger a writer of one of the slots."""
         found = dict.fromkeys([rule for slot in slots for rule in self._causers.get(slot, ())])
         return [self._causes.rules[rule] for rule in found]
-
-
-def writers(group: Group, slots: tuple[int, ...], causes: Causes) -> Iterable[Activation]:
-    """Return the members that may write one of the slots, the first to join first. In a small group, return all."""
-    return group.members if group.count <= FEW else _roster(group, causes).writers(slots)
-
-
-def causers(group: Group, slots: tuple[int, ...], causes: Causes) -> Iterable[RulePlan]:
-    """Return the rules of the members that may trigger a writer of one of the slots. In a small group, return all."""
-    if group.count <= FEW:
-        return dict.fromkeys([member.clause.rule for member in group.members])
-    return _roster(group, causes).causers(slots)
-
-
-def by_rule(group: Group, causes: Causes) -> Mapping[int, Mapping[Activation, None]]:
-    """Return the activations of the members, by the number of their rule."""
-    if group.count > FEW:
-        return _roster(group, causes).rules
-    found: dict[int, dict[Activation, None]] = {}
-    for member in group.members:
-        found.setdefault(member.clause.rule.index, {})[member] = None
-    return found
-
-
-def _roster(group: Group, causes: Causes) -> Roster:
-    roster = group.roster
-    if roster is None:
-        roster = group.roster = Roster(causes, group.members)
-    return roster

@@ -15,7 +15,6 @@ from ravestate.engine.group import NOTHING, Group
 from ravestate.engine.holdings import Holdings
 from ravestate.engine.loops import MANY, TURNS
 from ravestate.engine.outcomes import DONE, FAILED, RESIGNED, verdict
-from ravestate.engine.roster import writers
 from ravestate.engine.spike import Spike
 from ravestate.engine.state import State
 from ravestate.engine.watch import Watch
@@ -201,7 +200,7 @@ class Runs:
         for group in groups:
             for spike in list(group.entries) if state.benches else ():
                 self.holdings.benches.unbench(spike)
-            for other in list(writers(group, rule.slots, state.causes)) if group.count > 1 else ():
+            for other in list(group.writers(rule.slots, state.causes)) if group.count > 1 else ():
                 if (
                     other is not run
                     and other.state < RUNNING

@@ -11,7 +11,7 @@ from ravestate.policy.model import SignalPlan
 if TYPE_CHECKING:
     from ravestate.engine.activation import Activation
     from ravestate.engine.group import Group
-    from ravestate.engine.loops import Lineage
+    from ravestate.engine.lineage import Lineage
 
 
 class Spike:

@@ -34,7 +34,8 @@ from ravestate.engine.deadlines import Deadlines
 from ravestate.engine.effects import Effect, Failed
 from ravestate.engine.free import Free
 from ravestate.engine.group import NOTHING, Group
-from ravestate.engine.loops import Lineage, Loops
+from ravestate.engine.lineage import Lineage
+from ravestate.engine.loops import Loops
 from ravestate.engine.memory import Memory
 from ravestate.engine.row import Row
 from ravestate.engine.spike import Spike

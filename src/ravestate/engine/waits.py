@@ -14,10 +14,9 @@ with all hopes (`Waits.stir_rule`).
 from __future__ import annotations
 
 from ravestate.engine import trace
-from ravestate.engine.activation import NEVER, REFUSE, Activation
+from ravestate.engine.activation import NEVER, OUTSIDE, REFUSE, RULE, Activation, Refusal
 from ravestate.engine.deadlines import RECHECK
 from ravestate.engine.group import NOTHING
-from ravestate.engine.refusal import OUTSIDE, RULE, Refusal
 from ravestate.engine.state import State
 from ravestate.policy.model import Half, RulePlan
 

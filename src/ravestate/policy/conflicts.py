@@ -6,7 +6,7 @@ from dataclasses import dataclass
 
 from ravestate.policy.completion import each
 from ravestate.policy.model import Clause, RulePlan
-from ravestate.policy.policy import Policy
+from ravestate.policy.plans import Plans
 
 
 @dataclass(frozen=True, slots=True)
@@ -37,7 +37,7 @@ class Conflict:
         return (self.first, self.second)
 
 
-def find_conflicts(policy: Policy) -> tuple[Conflict, ...]:
+def find_conflicts(policy: Plans) -> tuple[Conflict, ...]:
     """Return all conflicts, in the declaration order of their first rules, then of their second rules."""
     conflicts = Conflicts(policy)
     writing = writers(policy)
@@ -48,7 +48,7 @@ def find_conflicts(policy: Policy) -> tuple[Conflict, ...]:
     return tuple(conflict for conflict in found if conflict is not None)
 
 
-def writers(policy: Policy) -> dict[int, list[RulePlan]]:
+def writers(policy: Plans) -> dict[int, list[RulePlan]]:
     """Return a map from each slot's number to the rules that write the slot."""
     found: dict[int, list[RulePlan]] = {}
     for rule in policy.rule_plans:
@@ -60,7 +60,7 @@ def writers(policy: Policy) -> dict[int, list[RulePlan]]:
 class Conflicts:
     """Finds the conflicts of one policy, pair by pair."""
 
-    def __init__(self, policy: Policy) -> None:
+    def __init__(self, policy: Plans) -> None:
         self.policy = policy
         self._roots: dict[Clause, int] = {}
         self._names: dict[int, tuple[str, ...]] = {}

@@ -12,7 +12,7 @@ from ravestate.policy.completion import each
 from ravestate.policy.conflicts import Conflicts, writers
 from ravestate.policy.loops import endless_loops
 from ravestate.policy.model import Clause, RulePlan
-from ravestate.policy.policy import Policy
+from ravestate.policy.plans import Plans
 from ravestate.policy.source import Source, acts_of, undeclared
 
 BREAKING = frozenset({"undeclared", "unknown", "await"})  # findings of these kinds make a rule fail at run time
@@ -45,7 +45,7 @@ class Finding:
         return f"{self.kind}: {self.message}"
 
 
-def find_all(policy: Policy, source: Source | None = None) -> tuple[Finding, ...]:
+def find_all(policy: Plans, source: Source | None = None) -> tuple[Finding, ...]:
     """Return all findings, at most one of each kind for a rule. Findings that make a rule fail at run time come first.
 
     `source` returns the source of a function. Without it, the findings that need source code are left out.
@@ -62,7 +62,7 @@ def find_all(policy: Policy, source: Source | None = None) -> tuple[Finding, ...
     )
 
 
-def _in_source(policy: Policy, source: Source) -> Iterator[Finding]:
+def _in_source(policy: Plans, source: Source) -> Iterator[Finding]:
     for rule in policy.rule_plans:
         acts = acts_of(rule, source)
         where = f"rule {rule.name} ({rule.rule.origin})"
@@ -75,7 +75,7 @@ def _in_source(policy: Policy, source: Source) -> Iterator[Finding]:
             yield Finding("await", rule.name, f"{where} calls ctx.{method} in line {line} without effect: {mend}")
 
 
-def _unraised(policy: Policy) -> Iterator[Finding]:
+def _unraised(policy: Plans) -> Iterator[Finding]:
     for signal in policy.signal_plans:
         waiting = [need.clause.rule.name for need in (*signal.listeners, *signal.watchers)]
         raised = signal.slot is not None or signal.signal.input or policy.causes.all_causes[signal.index]
@@ -89,7 +89,7 @@ def _unraised(policy: Policy) -> Iterator[Finding]:
             )
 
 
-def _loops(policy: Policy) -> Iterator[Finding]:
+def _loops(policy: Plans) -> Iterator[Finding]:
     for rules, signals in endless_loops(policy):
         names = few(rule.name for rule in rules)
         subject = f"rule {names} triggers itself" if len(rules) == 1 else f"rules {names} trigger each other"
@@ -101,7 +101,7 @@ def _loops(policy: Policy) -> Iterator[Finding]:
         )
 
 
-def _unreachable(policy: Policy) -> Iterator[Finding]:
+def _unreachable(policy: Plans) -> Iterator[Finding]:
     grounded = policy.causes.grounded(s.index for s in policy.signal_plans if s.input)
     known: dict[tuple[int, frozenset[int]], bool] = {}
     for rule in policy.rule_plans:
@@ -125,7 +125,7 @@ def _unreachable(policy: Policy) -> Iterator[Finding]:
             )
 
 
-def _starves(policy: Policy, clause: Clause, known: dict[tuple[int, frozenset[int]], bool]) -> bool:
+def _starves(policy: Plans, clause: Clause, known: dict[tuple[int, frozenset[int]], bool]) -> bool:
     """Return whether a signal of the clause comes only from rules that write a slot of the clause, too."""
     slots = clause.rule.slotset
     for need in clause.needs:
@@ -140,7 +140,7 @@ def _starves(policy: Policy, clause: Clause, known: dict[tuple[int, frozenset[in
     return False
 
 
-def _never_wins(policy: Policy) -> Iterator[Finding]:
+def _never_wins(policy: Plans) -> Iterator[Finding]:
     winners = _winners(policy)
     for rule in policy.rule_plans:
         if not rule.slots or not rule.clauses:
@@ -161,7 +161,7 @@ def _never_wins(policy: Policy) -> Iterator[Finding]:
             )
 
 
-def _winners(policy: Policy) -> dict[tuple[int, int], list[Clause]]:
+def _winners(policy: Plans) -> dict[tuple[int, int], list[Clause]]:
     """Return the clauses that wait only for signals, by slot and by the clause's rarest signal; the best come first."""
     found: dict[tuple[int, int], list[Clause]] = {}
     for rule in policy.rule_plans:
@@ -208,7 +208,7 @@ def _covers(winner: Clause, loser: Clause) -> bool:
     )
 
 
-def _ties(policy: Policy) -> Iterator[Finding]:
+def _ties(policy: Plans) -> Iterator[Finding]:
     conflicts = Conflicts(policy)
     # Only rules with the same slot, root signal and base utility can tie.
     peers: dict[tuple[int, int, float], list[RulePlan]] = {}
@@ -243,7 +243,7 @@ def _apart(first: RulePlan, second: RulePlan) -> bool:
     return any(mine[s] and theirs[s] and mine[s] != theirs[s] for s in mine.keys() & theirs.keys())
 
 
-def _cooldowns(policy: Policy) -> Iterator[Finding]:
+def _cooldowns(policy: Plans) -> Iterator[Finding]:
     conflicts = Conflicts(policy)
     writing = writers(policy)
     for rule in policy.rule_plans:
@@ -260,7 +260,7 @@ def _cooldowns(policy: Policy) -> Iterator[Finding]:
             )
 
 
-def _unheard(policy: Policy) -> Iterator[Finding]:
+def _unheard(policy: Plans) -> Iterator[Finding]:
     for signal in policy.signal_plans:
         if signal.slot is None and not signal.listeners and not signal.watchers and not signal.name.startswith("core:"):
             raisers = policy.causes.all_causes[signal.index]

@@ -19,7 +19,7 @@ from ravestate.declare.signal import Signal
 from ravestate.declare.slot import Slot
 from ravestate.policy.components import components
 from ravestate.policy.model import Clause, Need, RulePlan
-from ravestate.policy.policy import Policy
+from ravestate.policy.plans import Plans
 
 QUICK = (Signal, Slot, Module, Condition, str, int, float, tuple, NoneType)
 """Types of values that take no time to use."""
@@ -27,7 +27,7 @@ QUICK = (Signal, Slot, Module, Condition, str, int, float, tuple, NoneType)
 HOME = "ravestate"  # the content of Python modules whose names start with this takes no time to use
 
 
-def endless_loops(policy: Policy) -> Iterator[tuple[list[RulePlan], list[str]]]:
+def endless_loops(policy: Plans) -> Iterator[tuple[list[RulePlan], list[str]]]:
     """Yield, for each loop, its rules and the names of the signals between them."""
     clauses = [
         clause
@@ -59,7 +59,7 @@ def endless_loops(policy: Policy) -> Iterator[tuple[list[RulePlan], list[str]]]:
             yield [policy.rule_plans[member] for member in sorted(members)], list(names)
 
 
-def _fed(policy: Policy, clauses: list[Clause]) -> list[Clause]:
+def _fed(policy: Plans, clauses: list[Clause]) -> list[Clause]:
     """Drop clauses until each remaining clause waits only for signals that rules of remaining clauses raise.
 
     Return the remaining clauses.
@@ -87,7 +87,7 @@ def _wanted(clause: Clause) -> list[Need]:
     return [need for need in clause.needs if not need.detached] or list(clause.needs)
 
 
-def _raised(policy: Policy, rule: RulePlan) -> list[int]:
+def _raised(policy: Plans, rule: RulePlan) -> list[int]:
     """Return the numbers of the signals with which a rule may immediately start the loop's next run."""
     changes = [policy.slot_plans[s].signals[0].index for s in rule.slots if not policy.slot_plans[s].is_flag]
     return [*rule.emits, *changes]

@@ -2,20 +2,14 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
-from dataclasses import InitVar, dataclass
-from types import MappingProxyType
+from collections.abc import Mapping, Sequence
 from typing import TYPE_CHECKING, Any, Literal
 
 from ravestate.declare.module import Module
 from ravestate.declare.rule import Rule
-from ravestate.declare.signal import Signal
-from ravestate.declare.slot import Slot
 from ravestate.errors import DeclarationError, DeclarationErrors, nearest
-from ravestate.policy.causes import Causes
-from ravestate.policy.completion import Completion
-from ravestate.policy.model import ClauseView, RulePlan, SignalPlan, SlotPlan
-from ravestate.policy.pathways import Pathways
+from ravestate.policy.model import ClauseView, RulePlan
+from ravestate.policy.plans import Plans
 
 if TYPE_CHECKING:
     from ravestate.policy.conflicts import Conflict
@@ -23,8 +17,7 @@ if TYPE_CHECKING:
     from ravestate.policy.source import Source
 
 
-@dataclass(kw_only=True, eq=False, repr=False)
-class Policy:
+class Policy(Plans):
     """A set of compiled modules, made by ``rs.compile``.
 
     Attributes:
@@ -34,28 +27,16 @@ class Policy:
         slots: Qualified name → slot.
     """
 
-    modules: tuple[Module, ...]
-    declared: tuple[Rule[Any, Any], ...]
-    signal_plans: tuple[SignalPlan, ...]
-    slot_plans: tuple[SlotPlan, ...]
-    rule_plans: tuple[RulePlan, ...]
-    causes: Causes
-    completion: InitVar[Completion]
-    refers: bool
-    settings: Mapping[str, Any]
-
-    def __post_init__(self, completion: Completion) -> None:
-        self.pathways = Pathways(completion)
+    def __init__(
+        self,
+        modules: Sequence[Module],
+        declared: Sequence[Rule[Any, Any]],
+        settings: Mapping[str, Any],
+        faults: Sequence[str] = (),
+    ) -> None:
+        super().__init__(modules, declared, settings, faults)
         self.spare: list[Any] = []
         """Parts of engines (``engine/parts.py``) that no engine uses at present."""
-        clauses = [clause for rule in self.rule_plans for clause in (*rule.clauses, *rule.until)]
-        self.clause_plans = {clause.index: clause for clause in clauses}
-        self.plan_of = {plan.name: plan for plan in self.rule_plans}
-        self.signal_of = {plan.name: plan for plan in self.signal_plans}
-        self.slot_of = {plan.name: plan for plan in self.slot_plans}
-        self.rules: Mapping[str, Rule[Any, Any]] = MappingProxyType({rule.name: rule for rule in self.declared})
-        self.signals: Mapping[str, Signal[Any]] = MappingProxyType({p.name: p.signal for p in self.signal_plans})
-        self.slots: Mapping[str, Slot[Any]] = MappingProxyType({p.name: p.slot for p in self.slot_plans})
 
     def rule_plan(self, rule: str | Rule[Any, Any]) -> RulePlan:
         """Return the record of a rule; `rule` may be its qualified name.
@@ -147,7 +128,7 @@ class Policy:
         """
         from ravestate.draw import draw
 
-        return draw(self, format)
+        return draw(self.rules.values(), format)
 
     def with_settings(self, settings: Mapping[str, Any]) -> Policy:
         """Return a policy with these modules and the given settings. If no rule uses a setting, return this policy.
@@ -157,9 +138,7 @@ class Policy:
         """
         if not self.refers or settings == self.settings:
             return self
-        from ravestate.policy.compile import build
-
-        return build(self.modules, self.declared, settings)
+        return Policy(self.modules, self.declared, settings)
 
     def with_rule(self, rule: Rule[Any, Any], settings: Mapping[str, Any] | None = None) -> Policy:
         """Return this policy with one more rule; the rule must use this policy's signals and slots.
@@ -167,15 +146,13 @@ class Policy:
         Raises:
             DeclarationErrors: The rule does not fit this policy.
         """
-        from ravestate.policy.compile import build
-
         if not isinstance(rule, Rule):  # pyright: ignore[reportUnnecessaryIsInstance]  # users may not check types
             fault = f"{rule!r} is not a rule: write @module.rule(when=...) above the function"
             raise DeclarationErrors([DeclarationError(fault)])
         if rule.name in self.rules:
             fault = f"rule {rule.name} ({rule.origin}) is in the policy already; give the new rule another name=..."
             raise DeclarationErrors([DeclarationError(fault)])
-        return build(self.modules, (*self.declared, rule), self.settings if settings is None else settings)
+        return Policy(self.modules, (*self.declared, rule), self.settings if settings is None else settings)
 
     def __repr__(self) -> str:
         return f"<policy of {len(self.rules)} rules in {len(self.modules)} modules>"

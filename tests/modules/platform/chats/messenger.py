@@ -10,11 +10,23 @@ from typing import Any
 
 import ravestate as rs
 from ravestate.modules import interloc, rawio
-from ravestate.modules.platform.chats import ChatSettings, DeliveryError, Incoming, Outgoing, Person, Room, connect
+from ravestate.modules.platform.chats import (
+    Chat,
+    ChatSettings,
+    Command,
+    DeliveryError,
+    Incoming,
+    Outgoing,
+    Person,
+    Room,
+    connect,
+)
 from ravestate.runtime.agent import Agent
 
 letters = rs.Module("letters", requires=(rawio, interloc), settings=ChatSettings)
-chat, command = connect(letters)
+chat: rs.Slot[Chat | None] = letters.slot("chat", None)
+command: rs.Signal[Command] = letters.signal("command", payload=Command, input=True)
+connect(letters, chat, command)
 
 parrot = rs.Module("parrot", requires=(rawio, interloc))
 

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from . import rules as rules
 from .names import Settings, chat, command, module
 from .serving import serve
 

@@ -6,9 +6,7 @@ import pydantic
 
 import ravestate as rs
 from ravestate.modules import interloc, rawio
-from ravestate.modules.platform.chats import ChatSettings, connect
-
-from .serving import serve
+from ravestate.modules.platform.chats import Chat, ChatSettings, Command
 
 
 class Settings(ChatSettings):
@@ -24,7 +22,10 @@ class Settings(ChatSettings):
     """An access token, in place of the password. Set it as ``RAVESTATE_MATRIXIO_TOKEN``."""
 
 
-module = rs.Module("matrixio", requires=(rawio, interloc), settings=Settings, serve=serve)
+module = rs.Module("matrixio", requires=(rawio, interloc), settings=Settings)
 
-chat, command = connect(module)
-"""The slot with the chat of this context, and the signal for the commands ``!start`` and ``!help``."""
+chat: rs.Slot[Chat | None] = module.slot("chat", None)
+"""The chat of this context."""
+
+command: rs.Signal[Command] = module.signal("command", payload=Command, input=True)
+"""A user has given the command ``!start`` or ``!help``."""

@@ -7,19 +7,20 @@ from typing import TYPE_CHECKING, cast
 from ravestate.errors import PlatformError
 from ravestate.modules.platform.chats import library, secret
 
+from .names import Settings, module
+
 if TYPE_CHECKING:
     from ravestate.runtime.agent import Agent
 
-    from .names import Settings
 
-
+@module.server
 async def serve(agent: Agent) -> None:
     """Serve the agent in the rooms of its Matrix account, until cancelled; then end the conversations cleanly.
 
     Raises:
         PlatformError: The account is missing or refused, or a package is missing.
     """
-    settings = cast("Settings", agent.settings["matrixio"])
+    settings = cast(Settings, agent.settings["matrixio"])
     secrets = [each.get_secret_value() for each in (settings.token, settings.password) if each]
     if not any(secrets) or not (settings.token or settings.user):
         raise PlatformError(

@@ -10,8 +10,6 @@ import pydantic
 import ravestate as rs
 from ravestate.modules import interloc, rawio, ros1, ros2
 
-from .serving import serve
-
 if TYPE_CHECKING:
     from .connection import Connection
 
@@ -42,7 +40,7 @@ class Settings(rs.Settings):
     """The longest time (seconds) that the robot may take to speak an utterance."""
 
 
-module = rs.Module("roboyio", requires=(rawio, interloc, ros1, ros2), settings=Settings, serve=serve)
+module = rs.Module("roboyio", requires=(rawio, interloc, ros1, ros2), settings=Settings)
 
 here = module.flag("here", input=True)
 """Whether this is the robot's own context, in an agent that also has a platform with many users."""

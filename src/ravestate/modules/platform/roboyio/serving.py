@@ -4,14 +4,15 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
+from .names import here, module
+
 if TYPE_CHECKING:
     from ravestate.runtime.agent import Agent
 
 
+@module.server
 async def serve(agent: Agent) -> None:
     """Run the context of the robot until a rule stops it or the task is cancelled."""
-    from .names import here
-
     async with agent.context() as context:
         context.put(here, True)
         await context.until_stopped()

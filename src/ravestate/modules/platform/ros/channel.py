@@ -5,12 +5,23 @@ from __future__ import annotations
 import asyncio
 from collections.abc import Awaitable, Callable
 from dataclasses import dataclass
-from typing import TYPE_CHECKING, Any
+from typing import Any, Protocol
 
 from ravestate.errors import PlatformError
 
-if TYPE_CHECKING:
-    from .node import Node
+from .types import Types
+
+
+class Carrier(Protocol):
+    """A carrier of a channel's messages: a `Node`."""
+
+    types: Types
+
+    def publish(self, channel: Channel, body: memoryview) -> None: ...
+    async def call(self, channel: Channel, value: Any, feedback: Callable[[Any], None] | None = None) -> Any: ...
+    def take(self, channel: Channel, body: memoryview) -> None: ...
+    def acknowledge(self, channel: Channel) -> None: ...
+    def drop(self, channel: Channel) -> None: ...
 
 
 @dataclass(eq=False, slots=True)
@@ -30,7 +41,7 @@ class Channel:
         owed: Whether the bridge waits for an acknowledgement.
     """
 
-    node: Node
+    node: Carrier
     number: int
     binding: dict[str, Any]
     type: str

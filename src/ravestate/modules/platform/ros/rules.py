@@ -87,16 +87,17 @@ def open_node(
 def connect(
     module: rs.Module,
     version: Literal[1, 2],
+    node: rs.Slot[Node | None],
     make_node: Callable[[Any, Callable[[PlatformError], None] | None], Node],
-) -> rs.Slot[Node | None]:
-    """Declare on a module the slot for the node, and the rule that makes the node. Return the slot.
+) -> None:
+    """Declare on a module the rule that makes the node.
 
     Args:
         module: ``ros1`` or ``ros2``.
         version: 1 or 2.
+        node: The module's slot for the node.
         make_node: A function that makes a node from the module's settings and a function for failures.
     """
-    node: rs.Slot[Node | None] = module.slot("node", None)
 
     @module.rule(when=rs.startup.detached(), writes=node, detached=True, background=True)
     async def connect(ctx: rs.RuleContext) -> rs.Resign | None:
@@ -116,8 +117,6 @@ def connect(
             ctx[node] = None
             await made.close()
         return None
-
-    return node
 
 
 def follow_clock(ctx: rs.RuleContext, node: Node) -> None:

@@ -7,7 +7,7 @@ from typing import Literal
 
 import ravestate as rs
 from ravestate.errors import PlatformError
-from ravestate.modules.platform.ros import Declarations, Node, NodeSettings, connect, open_node
+from ravestate.modules.platform.ros import Declarations, Node, NodeSettings, open_node
 from ravestate.modules.platform.ros.places import ros1_place
 
 
@@ -33,7 +33,7 @@ def make_node(settings: Settings, failed: Callable[[PlatformError], None] | None
     )
 
 
-node = connect(module, 1, make_node)
+node: rs.Slot[Node | None] = module.slot("node", None)
 """The node of this context; None before the node starts, and in virtual time."""
 
 declarations = Declarations(1, module, node)

@@ -9,7 +9,7 @@ import pydantic
 
 import ravestate as rs
 from ravestate.errors import PlatformError
-from ravestate.modules.platform.ros import Declarations, Node, NodeSettings, connect, open_node
+from ravestate.modules.platform.ros import Declarations, Node, NodeSettings, open_node
 from ravestate.modules.platform.ros.places import ros2_place
 
 
@@ -34,7 +34,7 @@ def make_node(settings: Settings, failed: Callable[[PlatformError], None] | None
     )  # fmt: skip
 
 
-node = connect(module, 2, make_node)
+node: rs.Slot[Node | None] = module.slot("node", None)
 """The node of this context; None before the node starts, and in virtual time."""
 
 declarations = Declarations(2, module, node)

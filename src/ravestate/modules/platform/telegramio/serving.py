@@ -7,19 +7,20 @@ from typing import TYPE_CHECKING, cast
 from ravestate.errors import PlatformError
 from ravestate.modules.platform.chats import library, secret
 
+from .names import Settings, module
+
 if TYPE_CHECKING:
     from ravestate.runtime.agent import Agent
 
-    from .names import Settings
 
-
+@module.server
 async def serve(agent: Agent) -> None:
     """Serve the agent to the users of its Telegram bot, until cancelled; then end the conversations cleanly.
 
     Raises:
         PlatformError: The token is missing or wrong, another program polls the bot, or a package is missing.
     """
-    settings = cast("Settings", agent.settings["telegramio"])
+    settings = cast(Settings, agent.settings["telegramio"])
     token = settings.token.get_secret_value() if settings.token else ""
     if not token:
         raise PlatformError(

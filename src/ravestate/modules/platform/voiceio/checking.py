@@ -10,7 +10,7 @@ from pathlib import Path
 from ravestate.errors import PlatformError
 
 from .models import folders, piper_python, piper_voice, smart_turn, whisper_model, whisper_models
-from .names import Settings
+from .settings import Settings
 
 
 @dataclass(frozen=True, slots=True)

@@ -1,81 +1,20 @@
-"""The names of `voiceio`: its settings, its module, its signals and slots."""
+"""The names of `voiceio`: its module, its signals and slots."""
 
 from __future__ import annotations
 
-from pathlib import Path
-from typing import TYPE_CHECKING, Annotated, Literal, cast
-
-from pydantic import ConfigDict, Field
+from typing import TYPE_CHECKING, cast
 
 import ravestate as rs
 from ravestate.modules import rawio, verbaliser
 
 from .manner import Prosody
+from .settings import Settings
 from .utterances import Utterance
 
 if TYPE_CHECKING:
     from .ear import Turn
     from .mouth import Speech
     from .opening import Conversation
-
-Seconds = Annotated[float, Field(ge=0)]
-Share = Annotated[float, Field(ge=0, le=1)]
-
-
-class Settings(rs.Settings):
-    """The settings of voiceio: devices, models, and the timing of a conversation."""
-
-    model_config = ConfigDict(protected_namespaces=())  # allow the field `model`
-
-    source: str = "default"
-    """The microphone: ``default``, a device's name, or a WAV file. A platform's line in ``rawio.sound`` takes
-    priority."""
-    sink: str = "default"
-    """The loudspeaker: ``default``, a device's name, or a WAV file; empty to drop the sound."""
-    half_duplex: bool = False
-    """Whether the agent is deaf while it speaks. This helps with a loud loudspeaker, but prevents interruptions."""
-    echo_cancellation: bool = True
-    """Whether the agent's own voice is removed from the microphone's sound (libspeexdsp)."""
-
-    recogniser: Literal["whisper", "grammar"] = "whisper"
-    """``whisper``: faster-whisper; ``grammar``: pocketsphinx, for a few commands."""
-    model: str = ""
-    """For whisper, a model's name or folder, by default the best model on this machine. For grammar, a file in JSGF."""
-    language: str = "en"
-    """The user's language; empty to detect it in each utterance."""
-    threads: Annotated[int, Field(ge=0)] = 0
-    """CPU threads of the recogniser; 0 takes up to four."""
-    recogniser_timeout: Annotated[float, Field(gt=0)] = 20.0
-    """The time limit for recognising up to 25 s of sound (seconds). A slower recogniser counts as stuck, and is started
-    again."""
-    captions: Seconds = 1.0
-    """The seconds between two captions (``rawio.hearing``) while the user speaks; 0 for no captions."""
-
-    voice: str = ""
-    """``espeak``, ``espeak:en-gb``, ``piper``, or a Piper voice's name or file; by default Piper if it is set up."""
-    piper: Path | None = None
-    """The Python interpreter of Piper's environment; by default the one that ``make voice`` installs."""
-
-    speech: Share = 0.5
-    """The minimum probability of speech for a sound to count as speech."""
-    pause: Annotated[float, Field(ge=0.1)] = 0.2
-    """This many seconds of silence are a pause, and end a turn whose words and melody are complete."""
-    doubtful_pause: Seconds = 1.2
-    """This many seconds of silence end a turn that may be incomplete."""
-    longest_pause: Seconds = 1.4
-    """This many seconds of silence end every turn."""
-    complete: Share = 0.5
-    """The minimum probability for a melody to count as complete (smart-turn)."""
-
-    ask_back_below: Share = 0.38
-    """The agent asks back if the recogniser's confidence is below this."""
-    back_channel: Seconds = 1.0
-    """If the user speaks longer than this (seconds), it is more than an "mhm", so the agent stops speaking."""
-    filler_after: Seconds = 0.8
-    """The agent says a filler after this many seconds without an answer; 0 for no fillers."""
-    fillers: tuple[str, ...] = ("Hm.", "Well.", "Let me see.")
-    """The fillers."""
-
 
 module = rs.Module("voiceio", requires=[rawio, verbaliser], settings=Settings)
 

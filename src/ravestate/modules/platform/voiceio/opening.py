@@ -15,9 +15,9 @@ from .ear import Ear, Turn
 from .echo import EchoCanceller
 from .models import smart_turn
 from .mouth import Mouth
-from .names import Settings
 from .pair import Pair
 from .recogniser import Recognised, Recogniser
+from .settings import Settings
 from .synthesiser import Synthesiser
 from .turn import Melody, is_back_channel, is_demand, is_echo, melody_of, wanted_silence
 from .wav_line import WavLine

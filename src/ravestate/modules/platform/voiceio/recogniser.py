@@ -15,7 +15,7 @@ from ravestate.modules.modality.rawio.line import IN_RATE
 
 from . import model_process
 from .models import whisper_model
-from .names import Settings
+from .settings import Settings
 from .sound import pieces
 
 LONGEST = 25.0

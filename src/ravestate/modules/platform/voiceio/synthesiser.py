@@ -12,7 +12,7 @@ from . import model_process
 from .alignment import Word, by_phonemes, by_places
 from .manner import Prosody
 from .models import piper_python, piper_voice
-from .names import Settings
+from .settings import Settings
 from .sound import resample, seconds
 
 PATIENCE = 20.0

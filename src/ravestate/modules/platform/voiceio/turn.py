@@ -14,7 +14,7 @@ import yaml
 
 from ravestate.modules.modality.rawio.line import IN_RATE
 
-from .names import Settings
+from .settings import Settings
 
 WINDOW = 8.0
 """The melody model hears this many seconds at the end of a turn."""

@@ -7,7 +7,8 @@ from typing import TYPE_CHECKING
 
 from ravestate.modules.modality.rawio.line import IN_RATE, OUT_RATE
 
-from .names import Settings, module
+from .names import module
+from .settings import Settings
 from .utterances import Utterance
 
 if TYPE_CHECKING:

@@ -10,8 +10,6 @@ import pydantic
 import ravestate as rs
 from ravestate.modules import interloc, rawio
 
-from .serving import serve
-
 if TYPE_CHECKING:
     from .session import Session
 
@@ -70,7 +68,7 @@ class Settings(rs.Settings):
         return token
 
 
-module = rs.Module("webio", requires=(rawio, interloc), settings=Settings, serve=serve)
+module = rs.Module("webio", requires=(rawio, interloc), settings=Settings)
 
 page: rs.Slot[Session | None] = module.slot("page", None)
 """The conversation on the page that this context belongs to; None for a context without a page."""

@@ -21,6 +21,8 @@ KINDS = {
 }
 COMPRESSED = {".woff2"}
 """The suffixes of files that are compressed already."""
+LOGO = "assets/raven.svg"
+"""The icon of all pages. Only the folder of the chat page has this file."""
 
 
 async def refuse(socket: WebSocket, answer: Response) -> None:
@@ -32,19 +34,21 @@ async def refuse(socket: WebSocket, answer: Response) -> None:
 
 
 class Pages:
-    """An ASGI application that serves the files of a folder, and ``index.html`` for the folder itself.
+    """An ASGI application that serves `LOGO` and the files of a folder, and ``index.html`` for the folder itself.
 
     It reads the files only once.
     """
 
     def __init__(self, folder: Path) -> None:
         self._files: dict[str, tuple[bytes, bytes | None, str, str]] = {}
-        for file in sorted(folder.rglob("*")):
+        files = {LOGO: Path(__file__).parent / "page" / LOGO}
+        files |= {file.relative_to(folder).as_posix(): file for file in folder.rglob("*")}
+        for name, file in files.items():
             if file.suffix in KINDS:
                 data = file.read_bytes()
                 packed = None if file.suffix in COMPRESSED else gzip.compress(data, mtime=0)
                 tag = f'"{hashlib.sha256(data).hexdigest()[:16]}"'
-                self._files[f"/{file.relative_to(folder).as_posix()}"] = data, packed, KINDS[file.suffix], tag
+                self._files[f"/{name}"] = data, packed, KINDS[file.suffix], tag
 
     async def __call__(self, scope: Scope, receive: Receive, send: Send) -> None:
         """Answer a request for a file; refuse a WebSocket."""

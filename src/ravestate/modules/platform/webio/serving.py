@@ -9,6 +9,8 @@ from typing import TYPE_CHECKING
 
 from ravestate.errors import PlatformError
 
+from .names import module
+
 if TYPE_CHECKING:
     from starlette.applications import Starlette
     from starlette.routing import BaseRoute
@@ -16,6 +18,7 @@ if TYPE_CHECKING:
     from ravestate.runtime.agent import Agent
 
 
+@module.server
 async def serve(agent: Agent) -> None:
     """Serve an agent's page with the settings of ``webio`` until the task is cancelled.
 

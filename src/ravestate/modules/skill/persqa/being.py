@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import re
 from collections.abc import Iterator
-from typing import TYPE_CHECKING
 
 from ravestate.modules import nlp
 from ravestate.modules.meta.nlp.phrase import Phrase
@@ -12,13 +11,11 @@ from ravestate.modules.meta.nlp.phrase import Phrase
 from .kinds import likeness
 from .links import Link
 from .topics import NAME, SAYS, TOPICS, WORDS
+from .utterance import Utterance
 from .values import number_in
 
-if TYPE_CHECKING:
-    from .reading import Reader
 
-
-def being_in(reader: Reader, said: nlp.Statement) -> Iterator[Link]:
+def being_in(reader: Utterance, said: nlp.Statement) -> Iterator[Link]:
     """Yield the links of *I am ...*: an age, an occupation, studies, or a name."""
     object, text = said.object, said.object.text
     years = re.fullmatch(r"([\w -]+?)(?: (?:years?|yrs?)(?: (?:old|young|of age))?| old)?", text.lower())
@@ -57,19 +54,19 @@ def being_in(reader: Reader, said: nlp.Statement) -> Iterator[Link]:
         yield from (Link("employer", phrase, sure=False) for phrase in places)
 
 
-def _is_nationality(reader: Reader, phrase: Phrase) -> bool:
+def _is_nationality(reader: Utterance, phrase: Phrase) -> bool:
     labels = {entity.label for entity in reader.seen.entities if entity.text == phrase.text}
     return "NORP" in labels and likeness(phrase.text, "trait") < 0.2  # not a religion
 
 
-def beside_name(reader: Reader, said: nlp.Statement) -> Iterator[Link]:
+def beside_name(reader: Utterance, said: nlp.Statement) -> Iterator[Link]:
     """Yield the age and the origin after the user's name: *I'm Ada, 36, from Rome*."""
     ages = (word for word in reader.tree.words if word.dep == "appos" and word.pos == "NUM")
     yield from (Link("age", said.object, value=word.text) for word in ages)
     yield from (Link("origin", phrase) for phrase in said.phrases if phrase.preposition == "from")
 
 
-def _is_capital(reader: Reader, phrase: Phrase) -> bool:
+def _is_capital(reader: Utterance, phrase: Phrase) -> bool:
     """Return whether words begin with a capital as a name does: *I am Anneke*, but not *I am Greek*, *I'm a Leo*."""
     found = re.search(rf"(\w+) {re.escape(phrase.text)}(?!\w)", reader.seen.text)
     labels = {entity.label for entity in reader.seen.entities if phrase.text in entity.text} - {"PERSON", "ORG"}

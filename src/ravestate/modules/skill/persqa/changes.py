@@ -11,18 +11,15 @@ from __future__ import annotations
 import re
 from collections.abc import Collection, Iterator
 from difflib import SequenceMatcher
-from typing import TYPE_CHECKING
 
 from ravestate.modules import nlp
 from ravestate.modules.meta.nlp.phrase import Phrase
 
 from .links import NOW, Link, predicate_of
 from .topics import ENDS, NOUNS, TOPICS, WORDS, Fact
+from .utterance import Utterance
 from .values import gerund, number_in, value_of
 from .wording import same
-
-if TYPE_CHECKING:
-    from .reading import Reader
 
 _FIXED = re.compile(
     r"\b(?:with (?:\w+ )?[a-z](?:['’]?s)?(?=$|[,.;!]| (?:and|not|please)\b)|actually|said|meant|mean|sp(?:elled|elt)|"
@@ -35,7 +32,7 @@ ALIKE = 0.6
 """The least share of common letters of two values of which one was mistaken for the other: *Lora*, *Nora*."""
 
 
-def ended_by(reader: Reader, said: nlp.Statement) -> dict[str, tuple[str, ...]]:
+def ended_by(reader: Utterance, said: nlp.Statement) -> dict[str, tuple[str, ...]]:
     """Return the values by topic that a statement ends: *I gave up chess*, *I left the choir*, *Sven and I broke up*.
 
     A topic without values ends as a whole: *I quit my job*.
@@ -72,7 +69,7 @@ def _ending(topic: str) -> str:
     return "ending_activity" if about.kind in ("activity", "thing", "subject") else f"ending_{about.kind}"
 
 
-def _is_embedded(reader: Reader, said: nlp.Statement) -> bool:
+def _is_embedded(reader: Utterance, said: nlp.Statement) -> bool:
     """Return whether a clause depends on another: *it's not like I left Bosch*."""
     verb = reader.verb(said)
     while verb is not None and verb.dep in ("xcomp", "conj"):
@@ -80,7 +77,7 @@ def _is_embedded(reader: Reader, said: nlp.Statement) -> bool:
     return verb is None or verb.pos not in ("VERB", "AUX") or verb.dep in ("ccomp", "advcl", "relcl", "acl")
 
 
-def _is_object(reader: Reader, said: nlp.Statement, topic: str, value: str) -> bool:
+def _is_object(reader: Utterance, said: nlp.Statement, topic: str, value: str) -> bool:
     """Return whether a value is all that a statement is about, apart from a time."""
     others = [
         phrase for phrase in (said.object, *said.phrases) if phrase.text and phrase.text not in f"divorced {said.when}"
@@ -102,7 +99,7 @@ def _is_object(reader: Reader, said: nlp.Statement, topic: str, value: str) -> b
     return any(same(value, one) for one in things if one) or (last != [] and same(" ".join(last), said.object.text))
 
 
-def _has_more(reader: Reader, said: nlp.Statement) -> bool:
+def _has_more(reader: Utterance, said: nlp.Statement) -> bool:
     """Return whether a verb has a second object or a purpose: *I left Bosch a note*, *I stopped running to rest*."""
     verb = reader.verb(said)
     verbs = [verb, *reader.tree.ancestors(verb)] if verb else []
@@ -112,7 +109,7 @@ def _has_more(reader: Reader, said: nlp.Statement) -> bool:
     return infinitive or any(len(reader.tree.children(one, "dobj", "dative", "oprd")) > 1 for one in verbs)
 
 
-def switched_in(reader: Reader, said: nlp.Statement) -> Link | None:
+def switched_in(reader: Utterance, said: nlp.Statement) -> Link | None:
     """Return the new value in *I switched from law to physics*, *I changed my major to physics*."""
     new = next((phrase for phrase in said.phrases if phrase.preposition == "to"), None)
     others = [
@@ -128,7 +125,7 @@ def switched_in(reader: Reader, said: nlp.Statement) -> Link | None:
     return Link(topic, new, sure=False) if topic in WORDS["changeable"] else None
 
 
-def renamed_in(reader: Reader, said: nlp.Statement) -> Iterator[tuple[str, str, str]]:
+def renamed_in(reader: Utterance, said: nlp.Statement) -> Iterator[tuple[str, str, str]]:
     """Yield the old topic, the new topic and the name of a person or pet: *Rex is a dog*, if Rex was taken for a cat.
 
     The new topic is empty if the user only denies the old topic: *Tom is my cousin, not a friend*."""
@@ -150,20 +147,20 @@ def renamed_in(reader: Reader, said: nlp.Statement) -> Iterator[tuple[str, str, 
             yield topic, new, name
 
 
-def is_partial(reader: Reader, said: nlp.Statement) -> bool:
+def is_partial(reader: Utterance, said: nlp.Statement) -> bool:
     """Return whether a negation denies only a part: *I'm not just a nurse*, *I don't row because it's cheap*."""
     lasting = {"more", "longer", "anymore"} & reader.words
     reason = "because" in reader.words and not lasting and said.verb != "be"
     return said.negated and (reason or _PARTLY.search(reader.tree.text) is not None)
 
 
-def denied_by(reader: Reader, said: nlp.Statement, phrase: Phrase | None) -> bool:
+def denied_by(reader: Utterance, said: nlp.Statement, phrase: Phrase | None) -> bool:
     """Return whether a denial holds for good: *I don't play chess any more*, but not *I don't play chess today*."""
     others = [one.text for one in said.phrases if phrase and one != phrase and one.text not in said.when]
     return not (others or is_limited(reader, said) or {"did", "didn't"} & reader.words)
 
 
-def is_limited(reader: Reader, said: nlp.Statement) -> bool:
+def is_limited(reader: Utterance, said: nlp.Statement) -> bool:
     """Return whether an adverb or a time limits a statement: *I don't live alone*, *I left early*, *not today*."""
     verb = reader.verb(said)
     kinds = ("advmod", "prt") if said.verb == "be" else ("advmod", "prt", "acomp")

@@ -9,7 +9,6 @@ from __future__ import annotations
 
 import re
 from collections.abc import Iterator
-from typing import TYPE_CHECKING
 
 from ravestate.modules import nlp
 from ravestate.modules.meta.nlp.phrase import Phrase
@@ -17,11 +16,8 @@ from ravestate.modules.meta.nlp.phrase import Phrase
 from .answers import spelled_out
 from .kinds import frames, kind_of
 from .links import NOW, Link
-from .relatives import is_former
 from .topics import LASTING, NAME, WORDS
-
-if TYPE_CHECKING:
-    from .reading import Reader
+from .utterance import Utterance, is_former
 
 _STAND_INS = {
     "place": "Rome", "workplace": "Siemens", "school": "Oxford", "job": "nurse", "person": "Anna", "activity": "chess",
@@ -37,7 +33,7 @@ SURE = 0.6
 """The least confidence at which the words around a value tell a topic."""
 
 
-def framed_in(reader: Reader, said: nlp.Statement) -> Link | None:
+def framed_in(reader: Utterance, said: nlp.Statement) -> Link | None:
     """Return the topic of a statement by the words around a value, with the phrase of this value."""
     clause = "" if said.question or said.request else _clause(reader, said)
     theirs = said.subject.head == "name" or _is_person(reader, said.subject)  # "my sister lives in Rome"
@@ -64,18 +60,18 @@ def framed_in(reader: Reader, said: nlp.Statement) -> Link | None:
     return best[1] if best else None
 
 
-def _may_be_value(reader: Reader, said: nlp.Statement, phrase: Phrase) -> bool:
+def _may_be_value(reader: Utterance, said: nlp.Statement, phrase: Phrase) -> bool:
     described = said.verb == "be" and said.subject.person == "I" and phrase == said.object and not phrase.preposition
     other = phrase.person == "other" and not _is_person(reader, phrase) and phrase.owner is None
     return bool(phrase.text) and other and not described and phrase.text not in said.when
 
 
-def _is_person(reader: Reader, phrase: Phrase) -> bool:
+def _is_person(reader: Utterance, phrase: Phrase) -> bool:
     """Return whether a phrase names a relative, a friend or a pet: *my sister*, *a goldfish named Bubbles*."""
     return bool(reader.relative(phrase.head)) or phrase.head in WORDS["kin"]
 
 
-def _framed(reader: Reader, phrase: Phrase, clause: str) -> Iterator[str]:
+def _framed(reader: Utterance, phrase: Phrase, clause: str) -> Iterator[str]:
     """Yield a clause with stand-ins for a phrase."""
     written = reader.written(phrase)
     if written not in clause:
@@ -88,7 +84,7 @@ def _framed(reader: Reader, phrase: Phrase, clause: str) -> Iterator[str]:
             yield clause.replace(written, (article[0] if article else "") + stand_in, 1)
 
 
-def _clause(reader: Reader, said: nlp.Statement) -> str:
+def _clause(reader: Utterance, said: nlp.Statement) -> str:
     """Return the clause of a statement in the first person singular: *I have been in Oslo*."""
     tree, top = reader.tree, reader.verb(said)
     if top is None:

@@ -13,16 +13,15 @@ from ravestate.modules.meta.nlp.introduction import introductions_in
 
 from .kinds import is_remark, likeness
 from .topics import NAME, TOPICS
+from .utterance import Utterance
 from .values import value_of
 from .wording import among, same
 
 if TYPE_CHECKING:
     from ravestate.modules import nlp
 
-    from .reading import Reader
 
-
-def introduced_in(reader: Reader) -> str:
+def introduced_in(reader: Utterance) -> str:
     """Return the name in an introduction; empty if the user does not introduce themselves."""
     for one in introductions_in(reader.tree):
         another = one.pointing and (one.late or _means_another(reader, one.name))
@@ -52,7 +51,7 @@ def _is_foreign(word: str) -> bool:
     return word[:1].isupper() or lexicon.correction(low) == low
 
 
-def _means_another(reader: Reader, name: str) -> bool:
+def _means_another(reader: Utterance, name: str) -> bool:
     """Return whether *it is Ilka* answers a question about somebody else, corrects another value, or names a place."""
     topic = reader.asked or reader.recent
     if topic != NAME and any(same(one.right.text, name) for one in reader.seen.contrasts):

@@ -4,17 +4,14 @@ from __future__ import annotations
 
 import re
 from dataclasses import dataclass
-from typing import TYPE_CHECKING
 
 from ravestate.modules import nlp
 from ravestate.modules.meta.nlp.phrase import Phrase, gerund_phrase
 
 from .kinds import likeness
 from .topics import WORDS
+from .utterance import Utterance
 from .values import gerund
-
-if TYPE_CHECKING:
-    from .reading import Reader
 
 _LEISURE = re.compile(r"\b(?:free|spare|leisure) time\b|\bfor fun\b|\bas a hobby\b", re.IGNORECASE)
 NOW = frozenset(["tonight", "today", "tomorrow", "now", "this"])
@@ -45,7 +42,7 @@ def predicate_of(said: nlp.Statement) -> str:
     return " ".join(words)
 
 
-def pursuit_in(reader: Reader, said: nlp.Statement) -> Link | None:
+def pursuit_in(reader: Utterance, said: nlp.Statement) -> Link | None:
     """Return the hobby in *I like to read books*, *I play chess*, *I go swimming*, *I paint in my free time*."""
     if said.verb == "spend" and said.object.head in WORDS["leisure"] and (verb := reader.verb(said)):
         gerunds = [word for word in reader.tree.children(verb, "xcomp", "advcl", "ccomp") if word.tag == "VBG"]
@@ -83,7 +80,7 @@ def pursuit_in(reader: Reader, said: nlp.Statement) -> Link | None:
     return Link("hobby", object if object.text else said.subject, value=written) if wanted and written else None
 
 
-def trade_in(reader: Reader, said: nlp.Statement) -> Link | None:
+def trade_in(reader: Utterance, said: nlp.Statement) -> Link | None:
     """Return the occupation in *I drive trams for a living*; if the agent asked for it, also in *I drive trams*."""
     asked = reader.asked == "occupation" and said.verb not in WORDS["states"] | WORDS["passing"] | WORDS["pastimes"]
     living = any(phrase.preposition == "for" and phrase.head == "living" for phrase in said.phrases)

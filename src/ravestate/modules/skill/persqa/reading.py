@@ -15,46 +15,20 @@ from .being import being_in, beside_name
 from .changes import denied_by, ended_by, is_partial, renamed_in, switched_in
 from .frames import framed_in
 from .links import Link, predicate_of, pursuit_in, trade_in
-from .relatives import is_former, named_in, owner_before
+from .relatives import named_in
 from .topics import ASKS, LASTING, NAME, NOUNS, SAYS, TOPICS, WORDS, Fact, favourite
-from .values import is_gerund, value_of
-from .wording import Facts, alike, among, without
+from .utterance import MINE, Utterance
+from .values import is_gerund
+from .wording import alike, among, without
 
 _CALLED = frozenset(["be", "be called", "be named", "be spelled", "be spelt", "be written"])
 _ANY = re.compile(r"(?:any|there$|here$)", re.IGNORECASE)
 _INSTEAD = re.compile(r"\bno,? wait\b|\bwait,? no\b|\bI mean\b|\bsorry, ", re.IGNORECASE)
 """Words with which speakers correct themselves: *I'm Voss, no wait, I'm Claudia*."""
-_MINE = frozenset(["mine", "ours"])
-"""Subjects that stand for something of the user's: *mine is Ada*, after *which dog is yours?*."""
-_NONE = frozenset(["none", "neither", "nobody"])
 
 
-class Reader:
-    """The facts in an utterance.
-
-    Args:
-        seen: The analysis of the utterance.
-        asked: The topic of the agent's open question, or an empty string.
-        person: The topic of the relative whom *he* or *his* means, or an empty string.
-        known: The earlier facts.
-        recent: The topic that the user or the agent mentioned in the last utterances, or an empty string.
-    """
-
-    def __init__(
-        self, seen: nlp.Analysis, asked: str = "", person: str = "", known: Facts | None = None, recent: str = ""
-    ) -> None:
-        self.seen, self.tree, self.known, self.recent = seen, seen.tree, known or {}, recent
-        self.words = {word.low for word in seen.tree.words}
-        self.denies_all = bool(self.words & _NONE)
-        self.mistaken = not self.words.isdisjoint({"mistake", "mistakenly", "wrongly"})  # "she calls me Al by mistake"
-        self.asked = asked
-        self._was_child = any(
-            one.subject.person == "I" and one.verb == "be" and one.past and one.object.head in WORDS["young"]
-            for one in seen.statements
-        )  # "when I was a kid, we lived in Rome"
-        mine = (said.object for said in seen.statements if said.subject.person == "I" or said.object.of("I"))
-        owned = (self.relative(object.head) for object in mine)
-        self.person = person or next(filter(None, owned), "")
+class Reader(Utterance):
+    """The facts in an utterance: those that the user states, and the one that the user asks for."""
 
     def facts(self) -> list[Fact]:
         """Return the facts that the user states or denies, at most one of each for a topic."""
@@ -181,7 +155,7 @@ class Reader:
 
     def _listed(self, said: nlp.Statement) -> Iterator[Link]:
         subject, object, predicate = said.subject, said.object, predicate_of(said)
-        if subject.person == "I" and subject.text.lower() not in _MINE:
+        if subject.person == "I" and subject.text.lower() not in MINE:
             yield from self._of_user(said)
         elif object.person == "I" and (found := SAYS.get(f"{predicate} me")):
             yield Link(found[0], subject, found[1])
@@ -203,45 +177,10 @@ class Reader:
         elif said.verb == "be" and (topic := self.noun(object)):
             yield Link(topic, subject if isinstance(said.triple.subject, str) else None, sure=topic != NAME)
 
-    def noun(self, phrase: Phrase) -> str:
-        """Return the topic of *my job*, *my sister's name*, *my favourite food*; empty for other phrases."""
-        owner = phrase.owner
-        if phrase.text.lower() in _MINE:
-            return self.asked
-        if phrase.text.lower() == "name":  # "name is Ada, the name's Ada"
-            return NAME
-        theirs = owner and owner.text.lower() in ("his", "her") and phrase.head == "name"
-        if theirs or phrase.text.lower() in ("he", "she"):
-            return self.person
-        if (bare := NOUNS.get((owner or phrase).text.lower())) in ("mother", "father") and phrase.head.lower() in (
-            "name",
-            "",
-            phrase.text.lower(),
-        ):
-            return bare  # "mum's name is Ann"
-        if owner is None or not phrase.of("I") or is_former(phrase.text):
-            return ""
-        if self.relative(phrase.head) and (owner.person != "I" or self._has_owner(phrase)):
-            return ""  # "my friend's dog"
-        if (phrase.head == "name" and owner.person != "I") or (phrase.head == "one" and owner.owner is not None):
-            return self.noun(owner)  # "my sister's name, one of my hobbies"
-        low = phrase.text.lower()
-        if phrase.head == "name" and (relative := self.relative(low.split()[-2].removesuffix("s"))):
-            return relative  # "my dogs name"
-        topic = NOUNS.get(" ".join(low.split()[-2:])) or NOUNS.get(phrase.head, "")
-        best = re.search(r"\bfavou?rite .+", low)
-        if best and phrase.head[:3] in best[0] and topic != "hobby":
-            return favourite(re.sub(r"\w+$", phrase.head, best[0]) if best[0].endswith(f"{phrase.head}s") else best[0])
-        return topic
-
-    def _has_owner(self, phrase: Phrase) -> bool:
-        words = [word for word in self.tree.words if word.lemma == phrase.head and word.text in phrase.text]
-        return any(owner_before(word, self.tree) for word in words)
-
     def _of_user(self, said: nlp.Statement) -> Iterator[Link]:
         predicate, object = predicate_of(said), said.object
         verb = self.verb(said)
-        if verb is not None and verb.dep == "relcl" and not self._was_child:
+        if verb is not None and verb.dep == "relcl" and not self.was_child:
             value = self._equated(said, verb)
             if value is None:
                 return  # "the film that I like"
@@ -278,7 +217,7 @@ class Reader:
     def _by_table(self, said: nlp.Statement, *, has: bool) -> Iterator[Link]:
         """Yield the topics that the table has for *live in* (verb, preposition) or *have a job at* (with an object)."""
         predicate, object = "like" if self._dislikes(said) else predicate_of(said), said.object
-        child = self._was_child or any(one.preposition == "as" and one.head in WORDS["young"] for one in said.phrases)
+        child = self.was_child or any(one.preposition == "as" and one.head in WORDS["young"] for one in said.phrases)
         for phrase in dict.fromkeys((object, *said.phrases)):
             nominal = predicate == "be" and not object.preposition and phrase.preposition not in ("", "from")
             before = f"{self._word_before(phrase)} {phrase.preposition}"
@@ -301,18 +240,6 @@ class Reader:
                 ):
                     yield Link("birthplace", phrase)  # "I was born and raised in Dresden"
 
-    def has(self, said: nlp.Statement) -> bool:
-        """Return whether the user says that they have something: *I have*, *I've got*."""
-        got = said.verb == "get" and any(word.low == "got" for word in self.tree.words)
-        return said.subject.person == "I" and (said.verb in ("have", "own") or got)
-
-    def relative(self, noun: str) -> str:
-        """Return the topic of a relative, a friend or a pet; empty for other nouns."""
-        topic = NOUNS.get(noun, "")
-        return topic if topic and TOPICS[topic].kind == "people" else ""
-
-    # ----------------------------------------------------------------------------------------------- words
-
     def values(self, link: Link, *, denied: bool = False) -> tuple[str, ...]:
         """Return the values of a link's topic in the link's phrase."""
         topic, phrase = TOPICS[link.topic], link.phrase
@@ -323,35 +250,6 @@ class Reader:
         named = topic.kind == "people" or (topic.kind in ("place", "organisation") and phrase.head)
         raw = (phrase.names if named else ()) or (link.value or self.written(phrase),)  # "a small island, Naxos"
         return self.fitting(link.topic, raw, sure=(link.sure and not denied) or link.topic == self.asked == NAME)
-
-    def fitting(self, topic: str, raw: Iterable[str], *, sure: bool = True) -> tuple[str, ...]:
-        """Return the texts that can be values of a topic, in memory's spelling."""
-        return tuple(filter(None, (value_of(text, TOPICS[topic], self.seen, sure=sure) for text in raw)))
-
-    def verb(self, said: nlp.Statement) -> Word | None:
-        """Return the verb of a statement in the tree."""
-        last = said.triple.predicate.split()[-1]
-        verbs = [word for word in self.tree.words if word.low == last or word.lemma == said.verb]
-        return min(verbs, key=lambda word: word.pos not in ("VERB", "AUX"), default=None)
-
-    def written(self, phrase: Phrase) -> str:
-        """Return a phrase with its article, as in the utterance."""
-        inner = r"\s+(?:(?:the|an?)\s+)?".join(map(re.escape, phrase.text.split()))
-        articles = r"(?:(?:the|an?|our|this|that|these|those)\s+)?"
-        name = r"(?:-[\w-]+|\s&\s\w+|\s(?:am|an der|upon|de|del)\s\w+)*"  # "Stoke-on-Trent, Frankfurt am Main"
-        found = re.search(rf"(?<![\w']){articles}{inner}(?!\w){name}", self.tree.text, re.IGNORECASE)
-        return found[0] if found else phrase.name or phrase.text
-
-    def span(self, said: nlp.Statement) -> str:
-        """Return the last verb of a statement, its object, and the words between them."""
-        verb = self.verb(said)
-        return self.span_of(verb.low, said.object) if verb else ""
-
-    def span_of(self, verb: str, object: Phrase) -> str:
-        """Return a verb, its object, and the words between them."""
-        end = rf"(?:.{{0,40}}?{re.escape(object.text)})?"
-        found = re.search(rf"\b{re.escape(verb)}\w*\b{end}", self.tree.text, re.IGNORECASE)
-        return found[0] if found else ""
 
     def _word_before(self, phrase: Phrase) -> str:
         """Return the word before a phrase and its preposition: a verb that the parser may have mistaken for a noun."""

@@ -3,23 +3,19 @@
 from __future__ import annotations
 
 import itertools
-import re
 from collections.abc import Iterator, Sequence
-from typing import TYPE_CHECKING
 
 from ravestate.modules.meta.nlp.tree import Tree, Word
 
 from .introduced import introduced_in
 from .topics import NAME, WORDS
-
-if TYPE_CHECKING:
-    from .reading import Reader
+from .utterance import Utterance, is_former, owner_before
 
 _NOMINAL = frozenset(["PROPN", "NOUN", "X", "ADJ"])
 _OWN = frozenset(["my", "our"])
 
 
-def named_in(reader: Reader) -> Iterator[tuple[str, tuple[str, ...]]]:
+def named_in(reader: Utterance) -> Iterator[tuple[str, tuple[str, ...]]]:
     """Yield the relatives that the user names, with their names: *my sister Rosa*, *my mother's name is Anna*,
     *a son named Ben*, *call me Tom*.
 
@@ -70,20 +66,7 @@ def named_in(reader: Reader) -> Iterator[tuple[str, tuple[str, ...]]]:
         yield topic, tuple(value for value in values if beside.get(value, topic) == topic)
 
 
-def is_former(words: str) -> bool:
-    """Return whether words are about somebody or something that is not the user's now: *my ex wife*."""
-    return bool(WORDS["former"] & set(re.split(r"\W", words.lower())))
-
-
-def owner_before(word: Word, tree: Tree) -> Word | None:
-    """Return the person before a noun, to whom it belongs: *friend*, in *my friend's cat*, *my friends cat*."""
-    for owner in tree.children(word, "poss", "compound"):
-        if owner.pos in ("NOUN", "PROPN") and (owner.dep == "poss" or owner.tag == "NNS"):
-            return owner
-    return None
-
-
-def _is_anothers(reader: Reader, before: Word, word: Word) -> bool:
+def _is_anothers(reader: Utterance, before: Word, word: Word) -> bool:
     """Return whether a relative is somebody else's: *he's got a new girlfriend called Tamara*, *my brother's wife*."""
     if owner_before(word, reader.tree) or before.low in ("'s", "'", "his", "her", "their", "your"):
         return True
@@ -114,7 +97,7 @@ def _joined(tree: Tree, word: Word) -> Iterator[Word]:
             yield from _joined(tree, other)
 
 
-def _run(reader: Reader, word: Word) -> str:
+def _run(reader: Utterance, word: Word) -> str:
     """Return the name of one or more words that begins with `word`; empty if no name begins there."""
     if word.pos not in (*_NOMINAL, "VERB"):
         return ""

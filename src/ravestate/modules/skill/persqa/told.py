@@ -19,8 +19,9 @@ from .changes import ended_by, is_brief, renamed_in
 from .kinds import likeness
 from .links import NOW
 from .reading import Reader
-from .relatives import is_former, named_in
+from .relatives import named_in
 from .topics import NAME, NOUNS, TOPICS, WORDS
+from .utterance import is_former
 from .values import value_of
 from .wording import Facts
 

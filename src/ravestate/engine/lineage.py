@@ -1,0 +1,31 @@
+"""The lineage of spikes and runs: the rules that led to them within an instant (law L23)."""
+
+from __future__ import annotations
+
+from typing import NamedTuple
+
+from ravestate.policy.model import RulePlan
+
+
+class Loop:
+    """A run and all the runs that it has led to within an instant.
+
+    Attributes:
+        instant: The number of the instant.
+        turns: How many of the runs were further turns of the loop.
+        rules: The rules that had these further turns.
+    """
+
+    __slots__ = ("instant", "rules", "turns")
+
+    def __init__(self, instant: int) -> None:
+        self.instant = instant
+        self.turns = 0
+        self.rules: dict[RulePlan, None] = {}
+
+
+class Lineage(NamedTuple):
+    """The origin of a spike or a run: the numbers of the rules that led to it within an instant, and its loop."""
+
+    rules: frozenset[int]
+    loop: Loop
