@@ -91,6 +91,7 @@ class Utterance:
         return topic if topic and TOPICS[topic].kind == "people" else ""
 
     def fitting(self, topic: str, raw: Iterable[str], *, sure: bool = True) -> tuple[str, ...]:
+        """Return the texts that can be values of a topic, in memory's spelling."""
         return tuple(filter(None, (value_of(text, TOPICS[topic], self.seen, sure=sure) for text in raw)))
 
     def verb(self, said: nlp.Statement) -> Word | None:
