@@ -1,0 +1,88 @@
+"""Tests use public names only.
+
+A private name begins with one underscore. It belongs to the file that defines it, and nothing else may depend on it:
+a test states what a user or a neighbouring file can see. A public name within a private file, such as
+`ravestate.modules._text`, is public to all modules and so to the tests.
+"""
+
+import ast
+import functools
+import re
+from collections.abc import Iterator
+from pathlib import Path
+
+ROOT = Path(__file__).parents[2]
+SOURCE = ROOT / "src" / "ravestate"
+TESTS = ROOT / "tests"
+
+PRIVATE = re.compile(r"_[A-Za-z0-9]\w*")
+DOTTED = re.compile(r"ravestate(\.\w+)+")
+
+NAMED_TUPLE = {"_asdict", "_field_defaults", "_fields", "_make", "_replace"}
+"""The names of `collections.namedtuple` that are public in spite of their underscores."""
+
+ALLOWED: dict[tuple[str, str], str] = {}
+"""The reason why a test file, relative to `tests`, may use a private name of another file."""
+
+
+@functools.cache
+def private_names_of(file: Path) -> frozenset[str]:
+    """Return the private names that a file defines: its functions, classes, variables and attributes."""
+    names: set[str] = set()
+    for node in ast.walk(ast.parse(file.read_text(encoding="utf-8"), str(file))):
+        match node:
+            case ast.FunctionDef(name=name) | ast.AsyncFunctionDef(name=name) | ast.ClassDef(name=name):
+                names.add(name)
+            case ast.Name(id=name, ctx=ast.Store()):
+                names.add(name)
+            case ast.Attribute(value=ast.Name(id="self"), attr=name, ctx=ast.Store()):
+                names.add(name)
+            case _:
+                pass
+    return frozenset(name for name in names if PRIVATE.fullmatch(name))
+
+
+def files() -> list[Path]:
+    return sorted((*SOURCE.rglob("*.py"), *TESTS.rglob("*.py")))
+
+
+def private_names_used_in(file: Path) -> Iterator[tuple[int, str]]:
+    """Yield the line and the name of each private attribute, import and text with such a name in a file.
+
+    Texts count, as `monkeypatch.setattr` and `getattr` take names as texts.
+    """
+    for node in ast.walk(ast.parse(file.read_text(encoding="utf-8"), str(file))):
+        names: list[str] = []
+        match node:
+            case ast.Attribute(value=ast.Name(id="self" | "cls")):
+                pass
+            case ast.Attribute(attr=name):
+                names = [name]
+            case ast.ImportFrom(names=aliases):
+                names = [alias.name for alias in aliases]
+            case ast.Constant(value=str(text)):
+                names = [text.rpartition(".")[2]] if DOTTED.fullmatch(text) else [text]
+            case _:
+                continue
+        yield from ((node.lineno, name) for name in names if PRIVATE.fullmatch(name))
+
+
+def test_no_test_uses_a_private_name_of_another_file() -> None:
+    owners = {name for file in files() for name in private_names_of(file)}
+    guilty = [
+        f"{path}:{line}: {name}"
+        for file in sorted(TESTS.rglob("*.py"))
+        for path in [file.relative_to(TESTS).as_posix()]
+        for line, name in private_names_used_in(file)
+        if name in owners and name not in private_names_of(file) | NAMED_TUPLE and (path, name) not in ALLOWED
+    ]
+    assert not guilty, "\n".join(guilty)
+
+
+def test_every_exception_is_needed() -> None:
+    unused = [
+        f"{path}: {name}"
+        for path, name in ALLOWED
+        if name not in {used for _, used in private_names_used_in(TESTS / path)}
+    ]
+    assert not unused, "\n".join(unused)
