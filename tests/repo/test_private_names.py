@@ -17,6 +17,7 @@ TESTS = ROOT / "tests"
 
 PRIVATE = re.compile(r"_[A-Za-z0-9]\w*")
 DOTTED = re.compile(r"ravestate(\.\w+)+")
+TAKE_NAMES = {"delattr", "getattr", "hasattr", "setattr"}
 
 NAMED_TUPLE = {"_asdict", "_field_defaults", "_fields", "_make", "_replace"}
 """The names of `collections.namedtuple` that are public in spite of their underscores."""
@@ -49,7 +50,7 @@ def files() -> list[Path]:
 def private_names_used_in(file: Path) -> Iterator[tuple[int, str]]:
     """Yield the line and the name of each private attribute, import and text with such a name in a file.
 
-    Texts count, as `monkeypatch.setattr` and `getattr` take names as texts.
+    Texts with names count where they are given to a function like `getattr`, and with a path: "ravestate.module.name".
     """
     for node in ast.walk(ast.parse(file.read_text(encoding="utf-8"), str(file))):
         names: list[str] = []
@@ -60,8 +61,12 @@ def private_names_used_in(file: Path) -> Iterator[tuple[int, str]]:
                 names = [name]
             case ast.ImportFrom(names=aliases):
                 names = [alias.name for alias in aliases]
-            case ast.Constant(value=str(text)):
-                names = [text.rpartition(".")[2]] if DOTTED.fullmatch(text) else [text]
+            case ast.Call(
+                func=ast.Name(id=called) | ast.Attribute(attr=called), args=[_, ast.Constant(value=str(name)), *_]
+            ):
+                names = [name] if called in TAKE_NAMES else []
+            case ast.Constant(value=str(text)) if DOTTED.fullmatch(text):
+                names = [text.rpartition(".")[2]]
             case _:
                 continue
         yield from ((node.lineno, name) for name in names if PRIVATE.fullmatch(name))

@@ -10,9 +10,15 @@ from ravestate.modules.skill.genqa.index import Index
 
 
 @pytest.fixture(scope="session")
-def collection(tmp_path_factory: pytest.TempPathFactory) -> Iterator[Answerer]:
+def collection_file(tmp_path_factory: pytest.TempPathFactory) -> Path:
+    """Return the file of the index of `collection`."""
+    return tmp_path_factory.mktemp("collection") / "index.sqlite"
+
+
+@pytest.fixture(scope="session")
+def collection(collection_file: Path) -> Iterator[Answerer]:
     """Return an answerer for the collection that comes with Ravestate."""
-    answerer = Answerer(tmp_path_factory.mktemp("collection") / "index.sqlite")
+    answerer = Answerer(collection_file)
     answerer.load()
     yield answerer
     answerer.close()
