@@ -59,9 +59,11 @@ def test_any_text_has_a_vector_and_a_score(text: str) -> None:
 
 def test_many_threads_load_a_model_once(monkeypatch: pytest.MonkeyPatch, tmp_path: Path) -> None:
     made: list[Path] = []
+    all_started = threading.Event()
 
     def make(folder: Path) -> object:
         made.append(folder)
+        assert all_started.wait(60)
         return object()
 
     monkeypatch.setattr(model, "SentenceModel", make)
@@ -69,6 +71,7 @@ def test_many_threads_load_a_model_once(monkeypatch: pytest.MonkeyPatch, tmp_pat
     threads = [threading.Thread(target=lambda: found.append(model_in(tmp_path, "reranker_en"))) for _ in range(8)]
     for thread in threads:
         thread.start()
+    all_started.set()
     for thread in threads:
         thread.join()
     assert len(made) == 1
