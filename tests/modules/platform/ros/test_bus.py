@@ -147,6 +147,6 @@ def test_the_calls_of_a_server_that_goes_away_fail_immediately() -> None:
             await robot.close()
             with pytest.raises(PlatformError, match="the node of the service is gone"):
                 await call
-            await until(lambda: not bus._calls)  # the bus has also dropped the call that timed out
+            await until(lambda: not bus.calls)  # the bus has also dropped the call that timed out
 
     asyncio.run(main())

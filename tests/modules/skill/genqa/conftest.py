@@ -1,7 +1,9 @@
 """An index of the shipped collection, and an empty one."""
 
+import sqlite3
 from collections.abc import Iterator
 from pathlib import Path
+from typing import Any
 
 import pytest
 
@@ -25,7 +27,21 @@ def collection(collection_file: Path) -> Iterator[Answerer]:
 
 
 @pytest.fixture
-def index(tmp_path: Path) -> Iterator[Index]:
+def connections(monkeypatch: pytest.MonkeyPatch) -> list[sqlite3.Connection]:
+    """The connections to SQLite files that the test has opened so far, oldest first."""
+    opened: list[sqlite3.Connection] = []
+    connect = sqlite3.connect
+
+    def note(*arguments: Any, **options: Any) -> sqlite3.Connection:
+        opened.append(connect(*arguments, **options))
+        return opened[-1]
+
+    monkeypatch.setattr(sqlite3, "connect", note)
+    return opened
+
+
+@pytest.fixture
+def index(tmp_path: Path, connections: list[sqlite3.Connection]) -> Iterator[Index]:
     """Return an empty index."""
     with Index(tmp_path / "index.sqlite") as index:
         yield index
