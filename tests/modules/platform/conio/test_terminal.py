@@ -250,7 +250,9 @@ def test_typed_lines_are_kept_in_the_history_file(tmp_path: Path) -> None:
         assert file.stat().st_mode & 0o777 == 0o600
 
 
-def test_a_history_file_that_cannot_be_written_causes_no_error(tmp_path: Path) -> None:
+def test_a_history_file_that_cannot_be_written_causes_no_error(
+    tmp_path: Path, caplog: pytest.LogCaptureFixture
+) -> None:
     async def scene(terminal: Terminal, keys: PipeInput, paper: Paper) -> None:
         if file.is_file():  # it becomes unwritable after the start
             file.unlink()
@@ -262,6 +264,7 @@ def test_a_history_file_that_cannot_be_written_causes_no_error(tmp_path: Path) -
     (tmp_path / "file").touch()
     for file in (tmp_path / "file" / "history", tmp_path / "history"):
         play(scene, file)
+    assert caplog.records == []
 
 
 @pytest.mark.parametrize(
