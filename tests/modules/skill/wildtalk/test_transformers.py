@@ -197,6 +197,7 @@ def test_the_agent_ends_while_a_model_is_still_being_fetched(monkeypatch: pytest
 
     asyncio.run(story())
     assert not fetched.is_set()
+    assert all(thread.daemon for thread in threading.enumerate() if thread.name == file.LOADER)
     fetched.set()
     end_loaders()
 
