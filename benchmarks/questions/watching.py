@@ -108,7 +108,7 @@ def answered() -> list[list[float]]:
                 recorders = agent.recorders if isinstance(agent, RecordedAgent) else None
                 beside = () if recorders is None else routes(recorders)
                 server = await stack.enter_async_context(Server(agent, beside, INSIDE))
-                session = await server._app.state.sessions.open()  # pyright: ignore[reportPrivateUsage]
+                session = await server.app.state.sessions.open()
                 await asyncio.sleep(0.05)
                 recorder = None if recorders is None else recorders.of(session.context)
                 return Talk(session.context, heard, output, recorder), server

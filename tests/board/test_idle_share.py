@@ -13,18 +13,23 @@ class Clocks:
 
     passed = computed = kept = 0.0
 
+    def __init__(self, schedule: Path) -> None:
+        self.schedule = schedule
+        self.advance(0.0, 0.0)
+
     def advance(self, passed: float, computed: float, kept: float = 0.0) -> None:
         self.passed += passed
         self.computed += computed
         self.kept += kept
+        self.schedule.write_text(f"5000000000 {round(self.kept * 1e9)} 7\n")
 
 
 @pytest.fixture
-def clocks(monkeypatch: pytest.MonkeyPatch) -> Clocks:
-    clocks = Clocks()
+def clocks(monkeypatch: pytest.MonkeyPatch, tmp_path: Path) -> Clocks:
+    clocks = Clocks(tmp_path / "schedstat")
     monkeypatch.setattr(recorder, "perf_counter", lambda: clocks.passed)
     monkeypatch.setattr(recorder, "process_time", lambda: clocks.computed)
-    monkeypatch.setattr(recorder, "_kept_waiting", lambda: clocks.kept)
+    monkeypatch.setattr(recorder, "SCHEDULE", str(clocks.schedule))
     return clocks
 
 
@@ -51,14 +56,12 @@ def test_several_busy_threads_leave_no_idle_time(clocks: Clocks) -> None:
     assert spare.share() == 0.0  # no time has passed
 
 
-@pytest.mark.parametrize(
-    ("told", "seconds"), [("5000000000 1500000000 7\n", 1.5), ("", 0.0), ("5 x 7", 0.0), (None, 0.0)]
-)
-def test_without_a_readable_measurement_the_waiting_time_is_zero(
-    monkeypatch: pytest.MonkeyPatch, tmp_path: Path, told: str | None, seconds: float
-) -> None:
-    file = tmp_path / "schedstat"
-    if told is not None:
-        file.write_text(told)
-    monkeypatch.setattr(recorder, "SCHEDULE", str(file))
-    assert recorder._kept_waiting() == seconds
+@pytest.mark.parametrize("told", ["", "5 x 7", None])
+def test_without_a_readable_measurement_the_waiting_time_is_zero(clocks: Clocks, told: str | None) -> None:
+    spare = IdleShare()
+    clocks.advance(4.0, computed=1.0, kept=2.0)
+    if told is None:
+        clocks.schedule.unlink()
+    else:
+        clocks.schedule.write_text(told)
+    assert spare.share() == 0.75

@@ -11,9 +11,9 @@ from hypothesis import strategies as st
 
 import ravestate as rs
 from board.looking import in_virtual_time, passing
-from ravestate.board.recorder import BATCH, Gap, Recorder, Recorders, _fair  # pyright: ignore[reportPrivateUsage]
+from ravestate.board.recorder import BATCH, Gap, Recorder, Recorders, fair_length
 from ravestate.board.rendering import Rendered
-from ravestate.engine.trace import Born, Merged, Settled
+from ravestate.engine.trace import Born, Settled
 
 
 def ticking() -> tuple[rs.Context, rs.Signal[None]]:
@@ -101,12 +101,11 @@ async def test_each_context_has_its_own_single_recorder() -> None:
 async def test_a_recorder_is_freed_with_its_context() -> None:
     recorders = Recorders()
     gone: list[weakref.ref[Any]] = []
-    for length in (5, 300):  # the second recorder has stopped recording when its context ends
+    for make in (recorders.of, lambda context: Recorder(context, burst=100)):
         context, tick = ticking()
-        recorder = recorders.of(context)
-        recorder._burst = 100  # pyright: ignore[reportPrivateUsage]
+        recorder = make(context)
         async with context:
-            for _ in range(length):
+            for _ in range(300):  # the second recorder has stopped recording when its context ends
                 context.emit(tick)
             await passing(0.05)
         gone += [weakref.ref(context), weakref.ref(recorder)]
@@ -159,23 +158,29 @@ async def test_all_recorders_together_stay_within_the_shared_limit() -> None:
             assert recorder.since(0, 10_000) == list(recorder.records)
 
 
-@in_virtual_time
-async def test_missed_spikes_are_counted_correctly_even_if_no_earlier_spike_is_kept() -> None:
+async def records_of_a_context_with_one_tick() -> int:
     context, tick = ticking()
-    recorder = Recorder(context, rate=0, spare=0)
+    recorder = Recorder(context)
     async with context:
         context.emit(tick)
         await passing(1)
-        recorder._take(Merged(1.0, 2, 1))  # pyright: ignore[reportPrivateUsage]
-        recorder.shorten(1)
-        assert (recorder.first, recorder.whole) == (recorder.last, False)
-        recorder._left = 0  # pyright: ignore[reportPrivateUsage]
-        recorder._rest()  # pyright: ignore[reportPrivateUsage]
-        assert isinstance(recorder.records[-1], Gap)
+        return recorder.last
+
+
+@in_virtual_time
+async def test_missed_spikes_are_counted_correctly_even_if_no_earlier_spike_is_kept() -> None:
+    taken = await records_of_a_context_with_one_tick()
+    context, tick = ticking()
+    recorder = Recorder(context, kept=1, burst=taken - 1, rate=0, spare=0)  # a burst begins after the first record
+    async with context:
+        context.emit(tick)
         await passing(1)
+        assert recorder.last == taken + 1
+        [gap] = recorder.records
         context.emit(tick)  # no spike was missed
         await passing(1)
-    assert (recorder.missed, recorder.records[1]) == (0, Gap(1.0, 0))
+    assert isinstance(gap, Gap)
+    assert (gap.spikes, recorder.missed) == (0, 0)
 
 
 @in_virtual_time
@@ -211,33 +216,15 @@ async def test_shortening_during_a_gap_adds_no_missed_spikes() -> None:
 
 
 @in_virtual_time
-async def test_a_recorded_spike_that_was_dropped_later_does_not_count_as_missed() -> None:
-    context, tick = ticking()
-    recorder = Recorder(context, kept=5, rate=0, spare=0)
-    async with context:
-        context.emit(tick)
-        await passing(1)
-        for _ in range(5):
-            recorder._take(Merged(1.0, 2, 1))  # pyright: ignore[reportPrivateUsage]
-        recorder._left = 0  # pyright: ignore[reportPrivateUsage]
-        recorder._rest()  # pyright: ignore[reportPrivateUsage]
-        await passing(1)
-        context.emit(tick)
-        await passing(1)
-    assert recorder.missed == 0
-
-
-@in_virtual_time
 async def test_a_gap_counts_as_a_record() -> None:
-    context, _ = ticking()
+    context, tick = ticking()
     grown: list[int] = []
-    recorder = Recorder(context, rate=0, spare=0, grown=lambda: grown.append(recorder.last))
-    recorder._left = BATCH - 1  # pyright: ignore[reportPrivateUsage]
-    recorder._granted = 0.0  # pyright: ignore[reportPrivateUsage]
+    recorder = Recorder(context, burst=BATCH - 2, rate=0, spare=0, grown=lambda: grown.append(recorder.last))
     async with context:
-        while recorder.last < BATCH:
-            recorder._take(Merged(1.0, 2, 1))  # pyright: ignore[reportPrivateUsage]
-    assert isinstance(recorder.records[-1], Gap)
+        for _ in range(BATCH):
+            context.emit(tick)
+        await passing(0.01)
+    assert isinstance(recorder.records[BATCH - 1], Gap)
     assert grown == [BATCH]
 
 
@@ -246,11 +233,11 @@ async def test_a_gap_counts_as_a_record() -> None:
     [([], 10, 1), ([5, 3], 10, 5), ([5, 3], 6, 3), ([1, 9, 9], 11, 5), ([4] * 100, 50, 1), ([7], 3, 3)],
 )
 def test_the_longest_recorders_are_shortened_to_the_same_length(lengths: list[int], in_all: int, fair: int) -> None:
-    assert _fair(lengths, in_all) == fair
+    assert fair_length(lengths, in_all) == fair
 
 
 @given(st.lists(st.integers(0, 1000), min_size=1), st.integers(0, 5000))
 def test_the_records_that_remain_nearly_fill_the_shared_limit(lengths: list[int], spare: int) -> None:
     in_all = len(lengths) + spare
-    kept = sum(min(length, _fair(lengths, in_all)) for length in lengths)
+    kept = sum(min(length, fair_length(lengths, in_all)) for length in lengths)
     assert min(sum(lengths), in_all - len(lengths)) <= kept <= in_all

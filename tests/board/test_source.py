@@ -8,7 +8,7 @@ from typing import Any
 import pytest
 
 from board.looking import in_virtual_time, passing
-from ravestate.board.source import _outside_of_any_task  # pyright: ignore[reportPrivateUsage]
+from ravestate.board.source import outside_of_any_task
 
 
 def fail() -> None:
@@ -17,9 +17,9 @@ def fail() -> None:
 
 @in_virtual_time
 async def test_a_call_outside_of_any_task_returns_its_result() -> None:
-    assert await _outside_of_any_task(asyncio.current_task) is None
+    assert await outside_of_any_task(asyncio.current_task) is None
     with pytest.raises(ValueError, match="no"):
-        await _outside_of_any_task(fail)
+        await outside_of_any_task(fail)
 
 
 @pytest.mark.parametrize("work", [int, fail], ids=["call succeeds", "call fails"])
@@ -37,7 +37,7 @@ def test_a_call_whose_caller_was_cancelled_still_ends_quietly(work: Callable[[],
                 asking.cancel()
             return work()
 
-        asking = asyncio.create_task(_outside_of_any_task(call))
+        asking = asyncio.create_task(outside_of_any_task(call))
         if not by_the_call:  # after the caller has requested the call, and before the call is made
             asyncio.get_running_loop().call_soon(asking.cancel)
         await passing(1)

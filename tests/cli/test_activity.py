@@ -9,7 +9,8 @@ from pathlib import Path
 import pytest
 
 from modules.modality.activity.performers import performance
-from ravestate.cli import activity, main
+from ravestate.cli import main
+from ravestate.modules.modality.activity import video
 from ravestate.modules.modality.activity.files import write
 
 VIDEO = Path(sys.prefix) / "share" / "ravestate" / "eyes" / "videos" / "walk.mp4"
@@ -78,7 +79,8 @@ def test_walking_in_a_real_video_is_unknown_and_is_a_poor_demonstration(
 ) -> None:
     """The recogniser does not know walking. Several people come and go in the video, so it is a poor demonstration."""
     assert VIDEO.is_file(), "the video of the tests is missing: run make test, which fetches it"
-    monkeypatch.setattr(activity, "_poses", functools.cache(activity._poses))
+    poses_in = functools.cache(video.poses_in)  # look at the video only once
+    monkeypatch.setattr(video, "poses_in", lambda file, *_: poses_in(file))
     assert main(["activity", "guess", str(VIDEO), "--folder", folder]) == 0
     lines = capsys.readouterr().out.splitlines()
     assert len(lines) >= 3

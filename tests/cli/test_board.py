@@ -13,10 +13,11 @@ import pytest
 from websockets.sync.client import connect
 
 from board.test_trace_file import recorded
-from ravestate.cli import board, main
+from ravestate.cli import main
 from ravestate.errors import PlatformError
 from ravestate.modules.modality.visionio import places
 from ravestate.modules.platform.voiceio import models as speech_models
+from ravestate.modules.platform.webio import server
 from ravestate.modules.skill.wildtalk import found_models, local_servers
 from ravestate.runtime.agent import Agent
 
@@ -91,15 +92,31 @@ def test_without_modules_the_command_serves_the_complete_agent(tmp_path: Path) -
         assert command.end() == 0
 
 
+@pytest.fixture
+def served(monkeypatch: pytest.MonkeyPatch) -> list[Agent]:
+    """Return a list to which each command adds the agent that it serves. The server ends at once."""
+    agents: list[Agent] = []
+
+    class Stub:
+        def __init__(self, agent: Agent, *_: Any) -> None:
+            agents.append(agent)
+
+        async def __aenter__(self) -> "Stub":
+            return self
+
+        async def __aexit__(self, *_: object) -> None: ...
+
+        def announce(self, _: object) -> None: ...
+
+        async def until_failed(self) -> None: ...
+
+    monkeypatch.setattr(server, "Server", Stub)
+    return agents
+
+
 def test_without_a_language_model_the_page_says_how_to_get_one(
-    monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+    served: list[Agent], monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
 ) -> None:
-    served: list[Agent] = []
-
-    async def serve(made: Agent, *_: Any) -> None:
-        served.append(made)
-
-    monkeypatch.setattr(board, "_serve", serve)
     monkeypatch.setenv("RAVESTATE_WILDTALK_SEARCH", "true")
     monkeypatch.setattr(local_servers, "PORTS", {})
     monkeypatch.setattr(found_models, "folders", list)
@@ -116,14 +133,8 @@ def test_without_a_language_model_the_page_says_how_to_get_one(
     [([], True, True), ([], False, False), (["--without", "voiceio"], True, False), (["hibye"], True, False)],
 )
 def test_the_complete_agent_has_voiceio_only_if_speech_is_set_up(
-    monkeypatch: pytest.MonkeyPatch, arguments: list[str], models: bool, has: bool
+    served: list[Agent], monkeypatch: pytest.MonkeyPatch, arguments: list[str], models: bool, has: bool
 ) -> None:
-    served: list[Agent] = []
-
-    async def serve(made: Agent, *_: Any) -> None:
-        served.append(made)
-
-    monkeypatch.setattr(board, "_serve", serve)
     monkeypatch.setattr(speech_models, "whisper_models", lambda: iter([("base", Path())] if models else []))
     assert main(["board", *arguments]) == 0
     assert ("voiceio" in [module.name for module in served[0].policy.modules]) is has
@@ -139,19 +150,13 @@ def test_the_complete_agent_has_voiceio_only_if_speech_is_set_up(
     ],
 )
 def test_the_complete_agent_has_visionio_only_if_the_eyes_are_set_up(
-    monkeypatch: pytest.MonkeyPatch, arguments: list[str], there: bool, seen: set[str]
+    served: list[Agent], monkeypatch: pytest.MonkeyPatch, arguments: list[str], there: bool, seen: set[str]
 ) -> None:
-    served: list[Agent] = []
-
-    async def serve(made: Agent, *_: Any) -> None:
-        served.append(made)
-
     def eyes(_: object = None) -> str:
         if not there:
             raise PlatformError("visionio needs the packages of the eyes")
         return "python"
 
-    monkeypatch.setattr(board, "_serve", serve)
     monkeypatch.setattr(places, "eyes_python", eyes)
     assert main(["board", *arguments]) == 0
     assert {module.name for module in served[0].policy.modules} & {"visionio", "charades"} == seen

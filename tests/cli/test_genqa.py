@@ -7,7 +7,7 @@ from pathlib import Path
 import pytest
 
 from cli.examples import call
-from ravestate.modules.skill.genqa import collecting, places
+from ravestate.modules.skill.genqa import collecting
 
 
 @pytest.fixture
@@ -16,7 +16,6 @@ def docs(folder: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
     monkeypatch.setattr("sys.platform", "linux")
     monkeypatch.setenv("XDG_DATA_HOME", str(folder / "data"))
     monkeypatch.delenv("RAVESTATE_GENQA_INDEX", raising=False)
-    monkeypatch.setattr(places, "_answerers", {})
     docs = folder / "docs"
     docs.mkdir()
     (docs / "engine.txt").write_text("The Zorbex engine was invented by Mira Kolm in 1987.", encoding="utf-8")

@@ -89,7 +89,7 @@ def tangled_stars(draw: st.DrawFn) -> Diagram:
 @given(tangled_stars())
 def test_with_bounded_layers_nothing_overlaps_and_each_line_joins_its_nodes(diagram: Diagram) -> None:
     with pytest.MonkeyPatch.context() as patch:
-        patch.setattr("ravestate.draw.bounded._SCREEN", 200.0)
+        patch.setattr("ravestate.draw.bounded.SCREEN", 200.0)
         check(diagram)
 
 

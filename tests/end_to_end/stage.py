@@ -62,7 +62,7 @@ class Host:
     @property
     def app(self) -> Any:
         """The application, with its conversations in ``app.state.sessions``."""
-        return self.server._app
+        return self.server.app
 
     @property
     def sessions(self) -> list[Any]:
@@ -71,7 +71,7 @@ class Host:
 
     def drop(self) -> None:
         """Lose all connections, as when the network fails."""
-        uvicorn = self.server._uvicorn
+        uvicorn = self.server.uvicorn
         assert uvicorn is not None
         for connection in list(uvicorn.server_state.connections):
             connection.transport.abort()

@@ -2,51 +2,38 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
 from pathlib import Path
 from typing import Any
 
 import pytest
+from spacy.language import Language
 
 from ravestate import modules
 from ravestate.cli.complete import COMPLETE
-from ravestate.language import normal
-from ravestate.language.encoder import Encoder
-from ravestate.language.reranker import Reranker
-from ravestate.modules.meta.nlp.pipeline import Pipeline
+from ravestate.language.model import SentenceModel
 from ravestate.testing import simulate
 
 
 @pytest.fixture
 def work(monkeypatch: pytest.MonkeyPatch) -> dict[str, list[Any]]:
-    """The texts that the encoder, the parser, the cross-encoder and the normal form have processed."""
-    done: dict[str, list[Any]] = {"encoded": [], "parsed": [], "compared": [], "normalised": []}
-    encode, read, score, normalised = Encoder._encode, Pipeline._read, Reranker.score_pairs, normal._normalised
+    """The texts that the sentence models (encoder and cross-encoder) and the parser have processed."""
+    done: dict[str, list[Any]] = {"run": [], "parsed": []}
+    run, parse = SentenceModel.run, Language.__call__
 
-    def note_encoded(encoder: Encoder, texts: Sequence[str]) -> Any:
-        done["encoded"].append(list(texts))
-        return encode(encoder, texts)
+    def note_run(model: SentenceModel, texts: Any) -> Any:
+        done["run"].append(list(texts))
+        return run(model, texts)
 
-    def note_parsed(pipeline: Pipeline, orders: list[Any]) -> None:
-        done["parsed"] += [order.normal.text for order in orders]
-        read(pipeline, orders)
+    def note_parsed(language: Language, text: str, *more: Any, **options: Any) -> Any:
+        done["parsed"].append(text)
+        return parse(language, text, *more, **options)
 
-    def note_compared(reranker: Reranker, pairs: Sequence[tuple[str, str]]) -> Any:
-        done["compared"] += pairs
-        return score(reranker, pairs)
-
-    def note_normalised(text: str, *more: Any) -> Any:
-        done["normalised"].append((text, *more))
-        return normalised(text, *more)
-
-    monkeypatch.setattr(Encoder, "_encode", note_encoded)
-    monkeypatch.setattr(Pipeline, "_read", note_parsed)
-    monkeypatch.setattr(Reranker, "score_pairs", note_compared)
-    monkeypatch.setattr(normal, "_normalised", note_normalised)
+    monkeypatch.setattr(SentenceModel, "run", note_run)
+    monkeypatch.setattr(Language, "__call__", note_parsed)
     return done
 
 
-def test_an_utterance_is_encoded_parsed_and_normalised_once(tmp_path: Path, work: dict[str, list[Any]]) -> None:
+def test_an_utterance_is_encoded_once_and_parsed_once(tmp_path: Path, work: dict[str, list[Any]]) -> None:
     settings = {
         "ontology": {"path": tmp_path / "memory.lbug"},
         "genqa": {"index": tmp_path / "index.sqlite"},
@@ -61,7 +48,6 @@ def test_an_utterance_is_encoded_parsed_and_normalised_once(tmp_path: Path, work
         said = len(agent.said)
         agent.say("do you like chess?")
         assert len(agent.said) > said
-    assert work["encoded"] == [["do you like chess"]]  # one call of the encoder for the matchers of all modules
-    assert work["parsed"] == ["Do you like chess?"]
-    assert work["compared"] == []  # a question about the agent needs no document
-    assert len(work["normalised"]) == len(set(work["normalised"]))
+    # All matchers share one run of the encoder. The cross-encoder does not run: a question about the agent needs no document.
+    assert work["run"] == [["do you like chess"]]
+    assert len(work["parsed"]) == 1

@@ -96,7 +96,7 @@ def test_a_file_that_another_process_removes_meanwhile_causes_no_error(monkeypat
     def gone(_: Path) -> None:
         raise FileNotFoundError
 
-    monkeypatch.setattr(cache, "_limit", gone)
+    monkeypatch.setattr(os, "scandir", gone)
     mapped("map", lambda: np.arange(6))
     assert isinstance(mapped("map", lambda: np.arange(6)), np.memmap)
 

@@ -30,11 +30,16 @@ def test_free_memory_is_returned_to_the_system_after_a_load(monkeypatch: pytest.
 
 
 def test_a_second_load_delays_the_return_of_memory(monkeypatch: pytest.MonkeyPatch) -> None:
+    def timer_of_a_load() -> threading.Timer:
+        before = set(threading.enumerate())
+        note_load()
+        [timer] = set(threading.enumerate()) - before
+        assert isinstance(timer, threading.Timer)
+        return timer
+
     monkeypatch.setattr(heap, "SETTLED", 3600.0)
-    note_load()
-    [first] = heap._pending
-    note_load()
-    [second] = heap._pending
+    first = timer_of_a_load()
+    second = timer_of_a_load()
     assert first.finished.is_set()  # the second load has cancelled the first timer
     assert second.is_alive() and second.daemon
     second.cancel()

@@ -1,8 +1,8 @@
 """Laws of the normal form, which is correct written English. The quality set ``written_rows`` measures how good it is."""
 
 import threading
+from collections.abc import Callable
 from concurrent.futures import ThreadPoolExecutor
-from typing import Any
 
 import pytest
 from hypothesis import given
@@ -79,48 +79,65 @@ def test_the_plain_form_has_no_contractions() -> None:
     assert plain("Im here") == plain("I am here.")
 
 
-def test_the_normal_form_of_an_utterance_is_computed_once_for_all_rules(monkeypatch: pytest.MonkeyPatch) -> None:
+def test_the_normal_form_of_an_utterance_is_kept_for_all_rules() -> None:
     first = normalise("hullo rosie its me", ["Rosie"])
-    monkeypatch.setattr(normal, "_once", None)  # computing it again would fail
     assert normalise("hullo rosie its me", ("Rosie",)) is first
+
+
+class Knowing:
+    """A lexicon that knows every word. Its method `heard` runs for each word that `normalise` looks up."""
+
+    def __init__(self, heard: Callable[[str], object]) -> None:
+        self.heard = heard
+
+    def name(self, word: str) -> str:
+        self.heard(word)
+        return word
+
+    unstretched = correction = possible_name = name
+
+    def known(self, word: str) -> bool:
+        return True
 
 
 def test_a_long_text_does_not_delay_other_texts(monkeypatch: pytest.MonkeyPatch) -> None:
     """Contexts share the normal forms. A text of 2,000 characters takes 0.1 s, and other users must not wait for it."""
     begun, go_on = threading.Event(), threading.Event()
-    compute = normal._normalised
 
-    def slow(text: str, *more: Any) -> Normal:
-        if text == "a text of another user":
+    def wait(word: str) -> None:
+        if word == "another":
             begun.set()
             assert go_on.wait(60)
-        return compute(text, *more)
 
-    monkeypatch.setattr(normal, "_normalised", slow)
+    lexicon = Knowing(wait)
+    monkeypatch.setattr(normal, "loaded_lexicon", lambda: lexicon)
     with ThreadPoolExecutor(1) as pool:
-        other = pool.submit(normalise, "a text of another user")
+        other = pool.submit(normalise, "hi another user")
         assert begun.wait(60)
         assert normalise("u cant hold me up").text == "You can't hold me up."
         go_on.set()
-        assert other.result(60).text == "A text of another user."
+        assert other.result(60).text == "Hi another user."
 
 
 def test_simultaneous_rules_compute_the_normal_form_of_an_utterance_only_once(
     monkeypatch: pytest.MonkeyPatch,
 ) -> None:
-    computed: list[str] = []
-    compute, together = normal._normalised, threading.Barrier(8)
+    together = threading.Barrier(8)
 
-    def note(text: str, *more: Any) -> Normal:
-        computed.append(text)
-        return compute(text, *more)
+    def looked_up_by(threads: int) -> list[str]:
+        words: list[str] = []
+        lexicon = Knowing(words.append)
+        monkeypatch.setattr(normal, "loaded_lexicon", lambda: lexicon)
 
-    def ask(_: int) -> Normal:
-        together.wait(60)
-        return normalise("everybody reads this at the same time")
+        def ask(_: int) -> Normal:
+            if threads > 1:
+                together.wait(60)
+            return normalise("everybody reads this at the same time")
 
-    monkeypatch.setattr(normal, "_normalised", note)
-    with ThreadPoolExecutor(8) as pool:
-        found = list(pool.map(ask, range(8)))
-    assert computed == ["everybody reads this at the same time"]
-    assert len(set(map(id, found))) == 1
+        with ThreadPoolExecutor(threads) as pool:
+            found = list(pool.map(ask, range(threads)))
+        assert len(set(map(id, found))) == 1
+        return words
+
+    assert "everybody" in looked_up_by(1)
+    assert looked_up_by(8) == looked_up_by(1)

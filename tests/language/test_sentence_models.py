@@ -57,19 +57,21 @@ def test_any_text_has_a_vector_and_a_score(text: str) -> None:
     assert np.isfinite(Reranker().score(text, ["A passage.", text])).all()
 
 
-def test_many_threads_load_a_model_once(monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr(model, "_loaded", {})
+def test_many_threads_load_a_model_once(monkeypatch: pytest.MonkeyPatch, tmp_path: Path) -> None:
     made: list[Path] = []
+    all_started = threading.Event()
 
     def make(folder: Path) -> object:
         made.append(folder)
+        assert all_started.wait(60)
         return object()
 
     monkeypatch.setattr(model, "SentenceModel", make)
     found: list[object] = []
-    threads = [threading.Thread(target=lambda: found.append(model_in(None, "reranker_en"))) for _ in range(8)]
+    threads = [threading.Thread(target=lambda: found.append(model_in(tmp_path, "reranker_en"))) for _ in range(8)]
     for thread in threads:
         thread.start()
+    all_started.set()
     for thread in threads:
         thread.join()
     assert len(made) == 1

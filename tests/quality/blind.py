@@ -58,7 +58,7 @@ def about_agent(text: str) -> str:
     remark = skills.agentqa_remarks(text)
     if remark != NONE:
         return remark
-    seen = modules._seen(text)
+    seen = modules.analysed(text)
     for act in ("thanks", "acknowledgement", "contradiction"):
         if act in seen.acts:
             return act
@@ -89,7 +89,7 @@ def stored(text: str) -> frozenset[str]:
     meaning = skills.meaning_of(text)
     if meaning.kind not in ("told", "corrected"):
         return frozenset()
-    told = [skills._label(fact) for fact in meaning.facts]
+    told = [skills.fact_label(fact) for fact in meaning.facts]
     told += [
         f"{'user' if one.subject.lower() == 'i' else one.subject} / {one.verb} / {one.object}" for one in meaning.free
     ]

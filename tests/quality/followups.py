@@ -46,8 +46,7 @@ def measure_followups(file: Path = ROWS, every: int = 1) -> Result:
             counts["right"] += outcome in ("answered right", "rightly silent")
             if outcome in ("wrongly silent", "wrong"):
                 misses.append(f"{' / '.join((*case['talk'], case['follow']))}: {outcome}: {reply!r}")
-        for answerer in [places._answerers.pop(key) for key in [*places._answerers] if key[0] == path]:  # pyright: ignore[reportPrivateUsage]
-            answerer.close()
+        places.answerer_of(genqa.Settings(**settings["genqa"])).close()
     return Result(file.stem, len(cases), {what: count / len(cases) for what, count in counts.items()}, misses)
 
 

@@ -37,7 +37,7 @@ def acts_label(text: str) -> str:
 def intents(text: str) -> str:
     """Return the intents that nlp finds in a text, as a label."""
     bundled_matcher("acts").load()
-    seen = modules._seen(text)
+    seen = modules.analysed(text)
     return "+".join(intent.removeprefix("intent_") for intent in seen.acted) or "-"
 
 

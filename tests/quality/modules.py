@@ -29,7 +29,7 @@ from ravestate.modules.skill.genqa.question import not_asked, parsed
 FLAGS = ("negated", "past", "hearsay", "conditional", "plan", "question", "request")
 
 
-def _seen(text: str) -> Analysis:
+def analysed(text: str) -> Analysis:
     return _analysed(text, tuple(bundled_matcher(name).loaded for name in (*MATCHERS, "answers")))
 
 
@@ -98,7 +98,7 @@ def questions(text: str) -> str:
 def yesno(text: str) -> str:
     """Return the label of the meaning that a loaded nlp finds in an answer."""
     bundled_matcher("answers").load()
-    return yesno_label(_seen(text).yesno)
+    return yesno_label(analysed(text).yesno)
 
 
 def yesno_label(answer: YesNo) -> str:
@@ -117,7 +117,7 @@ def plain(text: str) -> str:
 
 def genqa(text: str) -> Reply | None:
     """Return the reply of genqa to a question that begins a conversation."""
-    settings, seen = genqa_module.Settings(), _seen(text)
+    settings, seen = genqa_module.Settings(), analysed(text)
     heard = parsed(seen.tree, seen.entities, seen.question)
     if not_asked(heard, seen):
         return None

@@ -12,7 +12,7 @@ from functools import cache
 from typing import Any
 
 from quality import measure, modules
-from quality.modules import _seen
+from quality.modules import analysed
 from ravestate.language.acts import heard, only
 from ravestate.language.matcher import bundled_matcher
 from ravestate.modules.meta.nlp.analysis import MATCHERS
@@ -67,13 +67,13 @@ def meaning_of(sentence: str) -> Meaning:
     """Return what the user tells or asks about themselves. The sentence can begin with its situation in brackets."""
     text, talk, known = talk_before(sentence)
     _load()
-    return understand(_seen(text), talk, known, now=1.0, within=90.0)
+    return understand(analysed(text), talk, known, now=1.0, within=90.0)
 
 
 def persqa_facts(sentence: str) -> str:
     """Return what the user tells or asks about themselves, as a label."""
     meaning = meaning_of(sentence)
-    facts = " ".join(map(_label, sorted(meaning.facts, key=lambda fact: fact.topic)))
+    facts = " ".join(map(fact_label, sorted(meaning.facts, key=lambda fact: fact.topic)))
     if meaning.kind in ("told", "corrected"):
         return facts or "-"
     if meaning.kind == "asked":
@@ -99,10 +99,22 @@ def _listener() -> Listener:
 
 def smalltalk(sentence: str) -> str:
     """Return the listener's answer to an utterance that begins a conversation."""
-    return _listener().answer(Heard(sentence, _seen(sentence)), State(), random.Random(0)).text
+    return _listener().answer(Heard(sentence, analysed(sentence)), State(), random.Random(0)).text
 
 
-def _label(fact: Fact) -> str:
+def facts(sentence: str) -> str:
+    """Return the facts in a sentence, if no fact is known and no question was asked before.
+
+    Semicolons join the facts: ``topic=value``, ``topic=a|b``, ``not topic=value``, or ``Subject / verb / object`` if no
+    topic fits. Without facts, return ``-``.
+    """
+    _load()
+    reader = Reader(analysed(sentence))
+    free = [f"{told.subject} / {told.verb} / {told.object}" for told in told_in(reader)]
+    return "; ".join([*map(fact_label, sorted(reader.facts(), key=lambda fact: fact.topic)), *free]) or "-"
+
+
+def fact_label(fact: Fact) -> str:
     values = "|".join(fact.values)
     return f"{'not ' if fact.gone else ''}{fact.topic}" + (f"={values}" if values else "")
 
@@ -123,7 +135,7 @@ def about_rows(sentence: str) -> str:
 def agentqa_remarks(sentence: str) -> str:
     """Return the topic of a remark that the agent must not take for small talk."""
     _load()
-    found = remark_in(sentence, read_life(), ["Robin"]) or act_in(_seen(sentence), read_life())
+    found = remark_in(sentence, read_life(), ["Robin"]) or act_in(analysed(sentence), read_life())
     return "-" if found is None else found.topic
 
 

@@ -46,7 +46,7 @@ def test_known_sentences_are_understood(name: str) -> None:
 
 def test_the_fast_measurements_give_the_same_results_as_the_whole_analysis_of_nlp() -> None:
     for text, _ in (*labelled("triples_rows")[::30], *labelled("questions_rows")[::20]):
-        whole = modules._seen(text)
+        whole = modules.analysed(text)
         assert [tuple(map(modules.text_of, triple)) for triple in whole.triples] == modules.triples(text)
         assert whole.question == modules.question(text)
 

@@ -231,12 +231,12 @@ class Recorders:
         if self._grown * 50 >= self._in_all:  # seldom true, so a record costs almost nothing
             self._grown = 0
             recorders = [found for known in self._of.values() if (found := known()) is not None]
-            length = _fair([len(recorder.records) for recorder in recorders], self._in_all)
+            length = fair_length([len(recorder.records) for recorder in recorders], self._in_all)
             for recorder in recorders:
                 recorder.shorten(length)
 
 
-def _fair(lengths: list[int], in_all: int) -> int:
+def fair_length(lengths: list[int], in_all: int) -> int:
     """Return the maximum length for each recorder, so that the total is at most `in_all`."""
     left = in_all
     for number, length in enumerate(sorted(lengths)):

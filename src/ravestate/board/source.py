@@ -114,7 +114,7 @@ class LiveSource:
                 context.pause()
                 self._session.notify()
             case Clock(type="step"):
-                if not await _outside_of_any_task(context.step):
+                if not await outside_of_any_task(context.step):
                     raise RavestateError(
                         "nothing is due: the agent waits for input, or for work that its clock does not control, such as a thread"
                         if context.paused
@@ -154,7 +154,7 @@ class LiveSource:
         return things[name]
 
 
-async def _outside_of_any_task(function: Callable[[], T]) -> T:
+async def outside_of_any_task(function: Callable[[], T]) -> T:
     """Call a function on the loop, outside this task, and return its result.
 
     If the function ran in this task, cancelling the task would also cancel the rules that the function started.

@@ -17,7 +17,7 @@ from ravestate.draw.simplex import Arc
 Extent = tuple[float, float]
 """Width and height in pixels."""
 
-_SCREEN = 720.0  # pixels: a picture of at most this height fits a screen, even if the picture is narrow
+SCREEN = 720.0  # pixels: a picture of at most this height fits a screen, even if the picture is narrow
 _TALLEST = 1.2  # a picture is too tall if its width : height is less than this
 _ASPECT = 1.6  # the best width : height
 _SPLITS = 16  # the maximum number of parts into which the largest layer is split
@@ -29,7 +29,7 @@ def fit_to_screen(ranks: Sequence[int], arcs: Sequence[Arc], extent: Callable[[S
     The function `extent` estimates the size of the picture for given layers.
     """
     best, (width, height) = list(ranks), extent(ranks)
-    if height <= _SCREEN or width >= _TALLEST * height:
+    if height <= SCREEN or width >= _TALLEST * height:
         return best
     nearest = _misfit(width, height)
     largest = max(Counter(ranks).values())

@@ -23,6 +23,8 @@ def load(config):
     print("a library prints")
 
     def handle(header, data):
+        if header["do"] == "wait":
+            open(header["pipe"]).read()
         if header["do"] == "hang":
             threading.Event().wait(60)
         if header["do"] == "die":
@@ -88,9 +90,10 @@ def test_a_process_that_dies_is_replaced(process: ModelProcess) -> None:
     with pytest.raises(PlatformError, match="exit code 3"):
         process.request({"do": "die"}, seconds=20)
     assert process.request({"do": "go on"}, seconds=20)[0]["said"] == "go on"
-    assert process.pid is not None
-    os.kill(process.pid, signal.SIGKILL)
-    process._process.wait(20.0)  # type: ignore[union-attr]
+    pid = process.pid
+    assert pid is not None
+    os.kill(pid, signal.SIGKILL)
+    os.waitid(os.P_PID, pid, os.WEXITED | os.WNOWAIT)
     assert process.request({"do": "and on"}, seconds=20)[0]["said"] == "and on"
     assert process.restarts == 1
 
@@ -177,7 +180,9 @@ def test_unused_processes_end_with_the_interpreter(backend: Backend) -> None:
         os.kill(int(done.stdout), 0)
 
 
-def test_a_request_that_nobody_wants_any_more_is_dropped_when_its_turn_comes(process: ModelProcess) -> None:
+def test_a_request_that_nobody_wants_any_more_is_dropped_when_its_turn_comes(
+    process: ModelProcess, tmp_path: Path
+) -> None:
     """If it were not dropped, the newest request would wait for an answer that nobody needs."""
     unwanted, refused = threading.Event(), list[str]()
 
@@ -186,11 +191,17 @@ def test_a_request_that_nobody_wants_any_more_is_dropped_when_its_turn_comes(pro
             process.request({"do": "die"}, seconds=20, unwanted=unwanted)
         refused.append(str(caught.value))
 
-    process.start()
-    with process._turn:  # as if another request were running
+    pipe = tmp_path / "pipe"
+    os.mkfifo(pipe)
+    running = threading.Thread(
+        target=process.request, args=({"do": "wait", "pipe": str(pipe)},), kwargs={"seconds": 20}
+    )
+    running.start()
+    with pipe.open("w"):  # this opens the pipe as soon as the request is running
         waiting = threading.Thread(target=ask)
         waiting.start()
         unwanted.set()
+    running.join()
     waiting.join()
     assert refused and process.request({"do": "go on"}, seconds=20, unwanted=threading.Event())[0]["pid"] == process.pid
     assert process.restarts == 0

@@ -13,6 +13,8 @@ import pytest
 from modules.meta.ontology.conftest import Open
 from ravestate.errors import PlatformError, RuleError
 from ravestate.modules.meta.ontology import Graph, Memory, Node
+from ravestate.modules.meta.ontology.bolt import BoltStore
+from ravestate.modules.meta.ontology.embedded import EmbeddedStore
 
 NASTY = [
     "O'Brien",
@@ -513,9 +515,10 @@ def test_a_closed_memory_refuses_operations(memory: Memory) -> None:
 def test_a_memory_of_a_newer_format_is_refused(open_here: Open, place: dict[str, Any]) -> None:
     memory = open_here(**place)
     memory.create("Person", name="Ada").result()
-    keeper = memory._worker
-    keeper.submit(lambda store: store.write("MATCH (m:`_ravestate` {`key`: 'format'}) SET m.`value` = 3", {})).result()
     memory.close().result()
+    store = EmbeddedStore(place["path"]) if "path" in place else BoltStore(**place, timeout=5.0)
+    store.write("MATCH (m:`_ravestate` {`key`: 'format'}) SET m.`value` = 3", {})
+    store.close()
     with pytest.raises(PlatformError, match=r"is of format 3, and this version of ravestate knows up to [12]:"):
         open_here(**place)
 

@@ -8,6 +8,7 @@ import sys
 import threading
 from collections.abc import Iterator
 from pathlib import Path
+from typing import Any
 
 import pytest
 
@@ -26,16 +27,16 @@ def holds(path: Path, trace: bytes = OLD.encode()) -> bool:
 
 
 @pytest.fixture
-def rewrites(monkeypatch: pytest.MonkeyPatch) -> list[Path]:
-    """Return a list to which each rewriting of a file adds its path."""
-    done: list[Path] = []
-    rewrite = EmbeddedStore._rewrite
+def rewrites(monkeypatch: pytest.MonkeyPatch) -> list[str]:
+    """Return a list to which each rewriting of a file adds the word *copied*."""
+    done: list[str] = []
+    copy = embedded.copy_database
 
-    def note(store: EmbeddedStore) -> None:
-        done.append(store._path)
-        rewrite(store)
+    def note(*databases: Any) -> None:
+        done.append("copied")
+        copy(*databases)
 
-    monkeypatch.setattr(EmbeddedStore, "_rewrite", note)
+    monkeypatch.setattr(embedded, "copy_database", note)
     return done
 
 
@@ -54,7 +55,7 @@ def rests(monkeypatch: pytest.MonkeyPatch) -> threading.Semaphore:
 
 
 def test_a_replaced_value_is_purged_from_the_file_in_the_first_pause(
-    tmp_path: Path, open_here: Open, rests: threading.Semaphore, rewrites: list[Path], monkeypatch: pytest.MonkeyPatch
+    tmp_path: Path, open_here: Open, rests: threading.Semaphore, rewrites: list[str], monkeypatch: pytest.MonkeyPatch
 ) -> None:
     monkeypatch.setattr(worker, "PAUSE", NEVER)
     path = tmp_path / "memory.lbug"
@@ -65,11 +66,11 @@ def test_a_replaced_value_is_purged_from_the_file_in_the_first_pause(
     monkeypatch.setattr(worker, "PAUSE", 0.01)
     memory.get(ada.id).result()
     assert rests.acquire(timeout=60)
-    assert rewrites == [path]
+    assert rewrites == ["copied"]
     assert not holds(path)
     assert memory.related(ada, "lives_in").result() == [new]
     assert rests.acquire(timeout=60)
-    assert rewrites == [path]  # a pause with nothing to purge rewrites nothing
+    assert rewrites == ["copied"]  # a pause with nothing to purge rewrites nothing
 
 
 def test_without_a_pause_the_purge_is_still_done_in_time(
@@ -85,7 +86,7 @@ def test_without_a_pause_the_purge_is_still_done_in_time(
 
 
 def test_purge_returns_when_no_byte_of_the_old_value_is_left(
-    tmp_path: Path, open_here: Open, rewrites: list[Path], monkeypatch: pytest.MonkeyPatch
+    tmp_path: Path, open_here: Open, rewrites: list[str], monkeypatch: pytest.MonkeyPatch
 ) -> None:
     monkeypatch.setattr(worker, "PAUSE", NEVER)
     path = tmp_path / "memory.lbug"
@@ -94,7 +95,7 @@ def test_purge_returns_when_no_byte_of_the_old_value_is_left(
     memory.purge().result()
     assert not holds(path)
     memory.purge().result()
-    assert rewrites == [path]
+    assert rewrites == ["copied"]
 
 
 def test_closing_a_memory_purges_it(tmp_path: Path, open_here: Open, monkeypatch: pytest.MonkeyPatch) -> None:
@@ -153,11 +154,12 @@ def test_purge_and_close_repeat_a_failed_purge_but_pauses_do_not(
     tmp_path: Path,
     open_here: Open,
     rests: threading.Semaphore,
-    rewrites: list[Path],
+    rewrites: list[str],
     monkeypatch: pytest.MonkeyPatch,
     ending: str,
 ) -> None:
     def fail(*_: object) -> None:
+        rewrites.append("copied")
         raise OSError("no more space")
 
     path = tmp_path / "memory.lbug"
@@ -171,7 +173,7 @@ def test_purge_and_close_repeat_a_failed_purge_but_pauses_do_not(
         for _ in range(2):
             memory.find("City").result()
             assert rests.acquire(timeout=60)
-        assert rewrites == [path]  # otherwise, each pause would log a warning
+        assert rewrites == ["copied"]  # otherwise, each pause would log a warning
     monkeypatch.setattr(worker, "PAUSE", NEVER)
     assert holds(path)
     (memory.purge() if ending == "purge" else memory.close()).result()
@@ -179,7 +181,7 @@ def test_purge_and_close_repeat_a_failed_purge_but_pauses_do_not(
 
 
 def test_a_deletion_that_is_rolled_back_causes_no_purge(
-    tmp_path: Path, open_here: Open, rewrites: list[Path], monkeypatch: pytest.MonkeyPatch
+    tmp_path: Path, open_here: Open, rewrites: list[str], monkeypatch: pytest.MonkeyPatch
 ) -> None:
     monkeypatch.setattr(worker, "PAUSE", NEVER)
     memory = open_here(path=tmp_path / "memory.lbug")

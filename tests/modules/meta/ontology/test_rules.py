@@ -96,14 +96,15 @@ def test_the_event_loop_continues_while_memory_is_busy(tmp_path: Path) -> None:
             while memory is None:
                 await asyncio.sleep(0)
                 memory = context.read(ontology.memory)
-            blocker = memory._worker.submit(lambda _: held.wait(20))
+            blocked = memory.submit("wait", lambda _: held.wait(20))
             context.emit(ask, "Ada")
             turns = 0
             while turns < 100:  # the loop continues while memory is blocked
                 await asyncio.sleep(0)
                 turns += 1
-            assert not blocker.done() and context.read(answer) == ""
+            assert context.read(answer) == ""
             held.set()
+            assert await blocked
             await context.next(answer.changed, timeout=20)
             return turns
 

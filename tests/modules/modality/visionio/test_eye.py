@@ -1,17 +1,20 @@
 """Cameras of the vision worker: video files, folders and devices. A worker that dies is replaced."""
 
 import os
+import shutil
 import signal
 import threading
 from collections.abc import Iterator
+from dataclasses import replace
 from pathlib import Path
+from threading import Thread
 
 import pytest
 
 from modules.modality.visionio.photographs import make, photo
 from ravestate.errors import PlatformError
+from ravestate.modules.modality.visionio import eye as eyes
 from ravestate.modules.modality.visionio.eye import Eye
-from ravestate.modules.modality.visionio.places import eyes_python
 
 CLIP = """
 frames = [cv2.resize(cv2.imread(a[0]), (320, 400)), cv2.resize(cv2.imread(a[1]), (320, 400))]
@@ -135,61 +138,80 @@ def test_a_truncated_video_is_reported_or_ends(eye: Eye, tmp_path: Path, clip: P
     assert "damaged" in str(run(watch())) or eye.ended
 
 
-def test_a_worker_that_dies_is_replaced_and_the_video_continues(clip: Path) -> None:
-    from ravestate.modules._children import process as processes
+@pytest.fixture
+def eye_alone(monkeypatch: pytest.MonkeyPatch, tmp_path: Path) -> Iterator[Eye]:
+    """An eye with a worker of its own, which the test may kill: each program gets a process."""
+    copy = tmp_path / "worker"
+    shutil.copytree(eyes.WORKER.program, copy)
+    monkeypatch.setattr(eyes, "WORKER", replace(eyes.WORKER, program=copy))
+    one = Eye()
+    yield one
+    one.close()
 
-    eye = Eye()
-    shared, eye._process = eye._process, processes.take(  # a separate process, which the test kills
-        eye._process._backend, {"want": ["faces"]}, eyes_python(), shared=False
-    )  # fmt: skip
-    processes.drop(shared)
 
+def test_a_worker_that_dies_is_replaced_and_the_video_continues(eye_alone: Eye, clip: Path) -> None:
     async def watch() -> None:
-        await eye.open(str(clip))
-        assert await see(eye, 0.0) == 1
-        assert eye.process.pid is not None
-        killed = eye.process.pid
+        await eye_alone.open(str(clip))
+        assert await see(eye_alone, 0.0) == 1
+        assert eye_alone.process.pid is not None
+        killed = eye_alone.process.pid
         os.kill(killed, signal.SIGKILL)
         with pytest.raises(PlatformError, match="ended"):
             for _ in range(3):  # the process can take a moment to die
-                await see(eye, 0.5)
-        assert await see(eye, 1.0) == 1
-        assert eye.process.pid not in (None, killed)
+                await see(eye_alone, 0.5)
+        assert await see(eye_alone, 1.0) == 1
+        assert eye_alone.process.pid not in (None, killed)
 
-    try:
-        run(watch())
-    finally:
-        eye.close()
+    run(watch())
 
 
-def test_the_worker_ends_when_its_last_user_closes() -> None:
-    from ravestate.modules._children import process as processes
-
-    one = Eye()
-    one._process, shared = (
-        processes.take(one._process._backend, {"want": []}, eyes_python(), shared=False),
-        one._process,
-    )
-    processes.drop(shared)
-    one.process.start()
-    pid = one.process.pid
+def test_the_worker_ends_when_its_last_user_closes(eye_alone: Eye) -> None:
+    eye_alone.process.start()
+    pid = eye_alone.process.pid
     assert pid is not None
-    one.close()
+    eye_alone.close()
     with pytest.raises(ProcessLookupError):
         os.kill(pid, 0)
 
 
-def test_a_camera_is_closed_even_while_the_worker_is_busy(clip: Path) -> None:
+STUB = """
+streams = set()
+
+def load(config):
+    def handle(header, data):
+        if header["do"] == "open":
+            streams.add(header["stream"])
+            return {"live": True}, b""
+        if header["do"] == "close":
+            streams.discard(header["stream"])
+            return {}, b""
+        if "pipe" in header:
+            open(header["pipe"]).read()
+        return {"picture": [1, 1], "streams": len(streams)}, b""
+
+    return handle
+"""
+"""A worker whose looks may wait for a pipe of the test."""
+
+
+def test_a_camera_is_closed_even_while_the_worker_is_busy(monkeypatch: pytest.MonkeyPatch, tmp_path: Path) -> None:
+    program, pipe = tmp_path / "stub.py", tmp_path / "pipe"
+    program.write_text(STUB)
+    os.mkfifo(pipe)
+    monkeypatch.setattr(eyes, "WORKER", replace(eyes.WORKER, program=program))
     one, other = Eye(), Eye()
     try:
-        assert run(one.open(str(clip))) is False
-        stream = one._stream
-        with one.process._turn:  # as if the worker looked at a picture for another agent
-            one.close()
+        for each in (one, other):
+            run(each.open("camera"))
+        looks = Thread(target=other.look_now, args=([], {"pipe": str(pipe)}))
+        looks.start()
+        with pipe.open("w"):  # this opens the pipe as soon as the look has begun
+            one.close()  # this does not wait for the look of the other agent
+            assert one.process.busy
+        looks.join(20)
         for thread in threading.enumerate():
             if thread.name == "visionio-close":
                 thread.join(20)
-        answer, _ = other.process.request({"do": "look", "stream": stream, "want": [], "at": 0.0}, seconds=20)
-        assert answer == {"closed": True}
+        assert other.look_now([], {}) == {"picture": [1, 1], "streams": 1}
     finally:
         other.close()

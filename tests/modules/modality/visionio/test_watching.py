@@ -95,7 +95,7 @@ def test_black_pictures_are_reported_once(monkeypatch: pytest.MonkeyPatch, caplo
     assert caplog.text.count("is the lens covered") == 1
 
 
-def looks_of(*spent: float) -> list[float]:
+def looks_of(monkeypatch: pytest.MonkeyPatch, *spent: float) -> list[float]:
     """Return the start times of looks that take the given seconds. The settings are 10 looks/s and a load of 0.5."""
 
     async def began() -> list[float]:
@@ -105,8 +105,9 @@ def looks_of(*spent: float) -> list[float]:
             nonlocal now
             now += seconds
 
-        watch = Watch(visionio.Settings(fps=10, load=0.5), None, LOG)
-        watch._eye = Blind(0, live=False)  # type: ignore[assignment]
+        monkeypatch.setattr(watching, "Eye", lambda _: Blind(0, live=False))
+        watch = Watch(visionio.Settings(source="film.mp4", fps=10, load=0.5), None, LOG)
+        assert await watch.begin()
         for one in spent:
             found.append(now)
             now += one
@@ -116,13 +117,13 @@ def looks_of(*spent: float) -> list[float]:
     return run(began())
 
 
-def test_on_a_slow_machine_the_agent_looks_less_often() -> None:
-    assert looks_of(0.3, 0.3, 0.3, 0.0) == pytest.approx([0.0, 0.6, 1.2, 1.8])
+def test_on_a_slow_machine_the_agent_looks_less_often(monkeypatch: pytest.MonkeyPatch) -> None:
+    assert looks_of(monkeypatch, 0.3, 0.3, 0.3, 0.0) == pytest.approx([0.0, 0.6, 1.2, 1.8])
 
 
-def test_one_slow_look_in_a_second_does_not_lower_the_rate() -> None:
+def test_one_slow_look_in_a_second_does_not_lower_the_rate(monkeypatch: pytest.MonkeyPatch) -> None:
     second = (0.09, *[0.02] * 9)
-    began = looks_of(*second, *second, 0.0)
+    began = looks_of(monkeypatch, *second, *second, 0.0)
     assert began[-1] == pytest.approx(2.0)
     assert began[:4] == pytest.approx([0.0, 0.18, 0.22, 0.3])
 

@@ -103,10 +103,23 @@ def letter(text: str = "", chat: str = "a", **fields: Any) -> Incoming:
     return Incoming(**{**base, "chat": chat, "text": text, **fields})
 
 
+class KeepingAgent(Agent):
+    """An agent that keeps its contexts, oldest first, for the test."""
+
+    def __init__(self, *modules: Any, **options: Any) -> None:
+        super().__init__(*modules, **options)
+        self.contexts: list[rs.Context] = []
+
+    def context(self, **options: Any) -> rs.Context:
+        self.contexts.append(super().context(**options))
+        return self.contexts[-1]
+
+
 @contextlib.asynccontextmanager
 async def room(path: Path, post: Post, *modules: Any, **settings: Any) -> AsyncGenerator[Room]:
     """Open the room of an agent. If no modules are given, the agent greets users and repeats their messages."""
-    agent = Agent(*(modules or (parrot,)), letters, settings={"letters": {"path": path / "letters.db", **settings}})
+    settings = {"letters": {"path": path / "letters.db", **settings}}
+    agent = KeepingAgent(*(modules or (parrot,)), letters, settings=settings)
     async with Room(agent, "letters", post, "me") as opened:
         yield opened
 

@@ -1,6 +1,7 @@
 """Chats with slow answers, chats that close meanwhile, groups, edits, and a file that cannot be written."""
 
 import contextlib
+import sqlite3
 from collections.abc import Generator
 from pathlib import Path
 
@@ -10,7 +11,7 @@ import ravestate as rs
 from modules.platform.chats.messenger import Post, letter, parrot, room
 from modules.platform.webio.visit import in_virtual_time, past
 from ravestate.modules import interloc, rawio
-from ravestate.modules.platform.chats import DeliveryError, Outgoing, Person, Room
+from ravestate.modules.platform.chats import DeliveryError, Outgoing, Person
 
 ADA, BOB = Person("1", "Ada"), Person("2", "Bob")
 
@@ -160,16 +161,18 @@ async def test_a_newcomer_who_edits_their_first_message_before_it_is_heard_is_gr
 
 
 @contextlib.contextmanager
-def not_writable(opened: Room) -> Generator[None]:
-    opened.store._db.execute("PRAGMA query_only=ON")
+def not_writable(connection: sqlite3.Connection) -> Generator[None]:
+    connection.execute("PRAGMA query_only=ON")
     try:
         yield
     finally:
-        opened.store._db.execute("PRAGMA query_only=OFF")
+        connection.execute("PRAGMA query_only=OFF")
 
 
 @pytest.mark.parametrize("delay", [0.0, 1.0, 2.99])
-def test_a_file_that_cannot_be_written_delays_an_answer_but_does_not_lose_it(tmp_path: Path, delay: float) -> None:
+def test_a_file_that_cannot_be_written_delays_an_answer_but_does_not_lose_it(
+    tmp_path: Path, connections: list[sqlite3.Connection], delay: float
+) -> None:
     """The file becomes unwritable before the agent hears the message, while it thinks, or when it answers."""
 
     @in_virtual_time
@@ -179,7 +182,7 @@ def test_a_file_that_cannot_be_written_delays_an_answer_but_does_not_lose_it(tmp
             opened.receive([letter("one")])
             if delay:
                 await past(delay)
-            with not_writable(opened):
+            with not_writable(connections[-1]):
                 await past(20.0)
                 assert post.sent == []
             assert await post.said(1) == ["a: one"]
@@ -193,7 +196,9 @@ def test_a_file_that_cannot_be_written_delays_an_answer_but_does_not_lose_it(tmp
 
 
 @in_virtual_time
-async def test_an_unprompted_utterance_is_sent_once_the_file_can_be_written_again(tmp_path: Path) -> None:
+async def test_an_unprompted_utterance_is_sent_once_the_file_can_be_written_again(
+    tmp_path: Path, connections: list[sqlite3.Connection]
+) -> None:
     post = Post()
     herald = rs.Module("herald", requires=(rawio,))
     news = herald.signal("news", input=True)
@@ -206,10 +211,9 @@ async def test_an_unprompted_utterance_is_sent_once_the_file_can_be_written_agai
         opened.receive([letter("one")])
         await post.said(2)
         await past(5.0)
-        [chat] = opened._chats.values()
-        assert chat.context is not None
-        with not_writable(opened):
-            chat.context.emit(news)
+        [context] = opened.agent.contexts
+        with not_writable(connections[-1]):
+            context.emit(news)
             await past(10.0)
             assert len(post.sent) == 2
         assert (await post.said(3))[2:] == ["a: News!"]

@@ -263,12 +263,11 @@ async def test_in_a_group_each_person_is_a_user_of_the_agent(tmp_path: Path) -> 
     async with room(tmp_path, post) as opened:
         opened.receive([letter("one", "g", person=ada, group=True), letter("two", "g", person=bob, group=True)])
         assert await post.said(4) == ["g: Hello Ada!", "g: one", "g: Hello Bob!", "g: two"]
-        [found] = opened._chats.values()
-        assert found.context is not None
-        assert dict(found.context.read(interloc.users)) == {"letters-1": "Ada", "letters-2": "Bob"}
+        [context] = opened.agent.contexts
+        assert dict(context.read(interloc.users)) == {"letters-1": "Ada", "letters-2": "Bob"}
         opened.receive([letter("stop", "g", kind="command", person=ada, group=True)])
         await past(1.0)
-        assert dict(found.context.read(interloc.users)) == {"letters-2": "Bob"}
+        assert dict(context.read(interloc.users)) == {"letters-2": "Bob"}
     assert post.sent[1].to and post.sent[3].to  # in a group, an answer is a reply to a message
 
 

@@ -1,6 +1,7 @@
 """The sender limits the rate of messages, and handles refused voice notes and a file that cannot be written."""
 
 import asyncio
+import sqlite3
 from pathlib import Path
 
 from modules.platform.chats.messenger import Post, letter, room
@@ -64,10 +65,12 @@ class Stubborn(Post):
 
 
 @in_virtual_time
-async def test_a_message_is_sent_once_even_if_the_file_cannot_be_written_meanwhile(tmp_path: Path) -> None:
+async def test_a_message_is_sent_once_even_if_the_file_cannot_be_written_meanwhile(
+    tmp_path: Path, connections: list[sqlite3.Connection]
+) -> None:
     post = Stubborn()
     async with room(tmp_path, post) as opened:
-        post.database = opened.store._db
+        [post.database] = connections
         opened.receive([letter("one")])
         assert await post.said(2) == ["a: Hello A!", "a: one"]
         await past(60.0)

@@ -12,7 +12,6 @@ import pytest
 
 from ravestate.errors import PlatformError
 from ravestate.modules.platform.conio.console import Console, history_file, prepare
-from ravestate.modules.platform.conio.pipes import Pipes
 
 ECHO = """
 import asyncio, sys
@@ -160,10 +159,16 @@ def test_writing_to_a_closed_output_ends_the_console(broken: Exception) -> None:
         asyncio.run(console.__anext__())
 
 
-def test_without_a_terminal_the_console_reads_and_writes_plain_lines(monkeypatch: pytest.MonkeyPatch) -> None:
-    plain = Console(stdin=io.StringIO(), stdout=io.StringIO())
-    assert isinstance(plain._screen, Pipes)
-    assert not plain.interactive
+def test_without_a_terminal_the_console_reads_and_writes_plain_lines(
+    monkeypatch: pytest.MonkeyPatch, tmp_path: Path
+) -> None:
+    printed = io.StringIO()
+    (tmp_path / "typed").write_text("one\ntwo\n")
+    with (tmp_path / "typed").open() as typed:
+        plain = Console(stdin=typed, stdout=printed)
+        assert not plain.interactive
+        assert asyncio.run(_lines(plain)) == ["one", "two"]
+    assert printed.getvalue() == "hello\n"
     assert Console(Script()).interactive
     monkeypatch.setattr(sys, "stdin", None)
     monkeypatch.setattr(sys, "stdout", None)

@@ -194,7 +194,8 @@ def test_the_end_of_input_ends_the_agent_after_a_farewell(keys: Keys, end: BaseE
         assert sim.said == ["Bye!"]
         assert dict(sim.read(interloc.users)) == {}
         assert sim.read(conio.screen) is None
-        assert sim.context._is_to_stop
+        with pytest.raises(StopIteration):  # it returns at once, because the agent is to end
+            sim.context.until_stopped().send(None)
     assert not sim.failures
 
 

@@ -6,27 +6,32 @@ import os
 import sys
 from collections.abc import Awaitable, Callable
 from pathlib import Path
+from typing import Any
 
 import pytest
 from prompt_toolkit.data_structures import Size
-from prompt_toolkit.history import InMemoryHistory
 from prompt_toolkit.input import PipeInput, create_pipe_input
 from prompt_toolkit.output import DummyOutput
 from prompt_toolkit.output.vt100 import Vt100_Output
 
 from ravestate.modules.platform.conio import terminal as terminal_file
-from ravestate.modules.platform.conio.terminal import Terminal, _full_row, _history
+from ravestate.modules.platform.conio.terminal import Terminal
 
 
 class Paper(DummyOutput):
-    """A terminal of 20 columns. It keeps the text that is printed above the prompt."""
+    """A terminal. It keeps the text that is printed above the prompt."""
 
-    def __init__(self) -> None:
+    def __init__(self, columns: int = 20) -> None:
+        self.columns = columns
         self.printed = ""
         self.broken: OSError | None = None
+        self.flushed = asyncio.Event()
 
     def get_size(self) -> Size:
-        return Size(rows=40, columns=20)
+        return Size(rows=40, columns=self.columns)
+
+    def flush(self) -> None:
+        self.flushed.set()
 
     def write_raw(self, data: str) -> None:
         if self.broken:
@@ -34,12 +39,24 @@ class Paper(DummyOutput):
         self.printed += data
 
 
+class Screen(Vt100_Output):
+    """A terminal that understands escape sequences."""
+
+    def __init__(self, *arguments: Any, **options: Any) -> None:
+        super().__init__(*arguments, **options)
+        self.flushed = asyncio.Event()
+
+    def flush(self) -> None:
+        super().flush()
+        self.flushed.set()
+
+
 Play = Callable[[Terminal, PipeInput, Paper], Awaitable[None]]
 
 
-def play(scene: Play, history: Path | None = None) -> str:
+def play(scene: Play, history: Path | None = None, columns: int = 20) -> str:
     async def main() -> str:
-        paper = Paper()
+        paper = Paper(columns)
         with create_pipe_input() as keys:
             async with Terminal("> ", history, input=keys, output=paper) as terminal:
                 await scene(terminal, keys, paper)
@@ -48,15 +65,14 @@ def play(scene: Play, history: Path | None = None) -> str:
     return asyncio.run(main())
 
 
-async def drawn(terminal: Terminal) -> None:
+async def drawn(paper: Paper | Screen) -> None:
     """Wait until the prompt is drawn again."""
-    app, shown = terminal._session.app, asyncio.Event()
-    app.after_render += lambda _: shown.set()
-    await shown.wait()
+    paper.flushed.clear()
+    await paper.flushed.wait()
 
 
 def message(terminal: Terminal) -> str:
-    return "".join(fragment[1] for fragment in terminal._message())
+    return "".join(fragment[1] for fragment in terminal.message())
 
 
 def test_lines_can_be_typed_edited_recalled_and_pasted() -> None:
@@ -113,7 +129,7 @@ def test_lines_are_printed_in_order_with_and_without_a_prompt() -> None:
     async def scene(terminal: Terminal, keys: PipeInput, paper: Paper) -> None:
         terminal.show("one\ntwo")
         reading = asyncio.create_task(terminal.read())
-        await drawn(terminal)
+        await drawn(paper)
         terminal.show("three")
         terminal.show("four")
         keys.send_text("x\r")
@@ -126,10 +142,10 @@ def test_lines_are_printed_in_order_with_and_without_a_prompt() -> None:
 def test_a_streamed_line_grows_above_the_prompt() -> None:
     async def scene(terminal: Terminal, keys: PipeInput, paper: Paper) -> None:
         reading = asyncio.create_task(terminal.read())
-        await drawn(terminal)
+        await drawn(paper)
         terminal.stream("Hel")
         assert message(terminal) == "Hel\n> "
-        await drawn(terminal)
+        await drawn(paper)
         terminal.stream("lo\nyou")
         assert message(terminal) == "you\n> "
         terminal.end()
@@ -157,9 +173,9 @@ def test_full_rows_of_a_streamed_line_are_printed_above_the_prompt() -> None:
 def test_text_that_was_streamed_before_a_typed_line_is_not_printed_again(rest: list[str], printed: str) -> None:
     async def scene(terminal: Terminal, keys: PipeInput, paper: Paper) -> None:
         reading = asyncio.create_task(terminal.read())
-        await drawn(terminal)
+        await drawn(paper)
         terminal.stream("Once upon a")
-        await drawn(terminal)
+        await drawn(paper)
         keys.send_text("wait\r")
         assert await reading == "wait"
         assert message(terminal) == "> "
@@ -191,7 +207,7 @@ def test_standard_output_and_error_go_above_the_prompt_unless_they_are_redirecte
 def test_reading_ends_if_the_terminal_has_gone() -> None:
     async def scene(terminal: Terminal, keys: PipeInput, paper: Paper) -> None:
         reading = asyncio.create_task(terminal.read())
-        await drawn(terminal)
+        await drawn(paper)
         paper.broken = OSError(5, "Input/output error")
         terminal.show("hello")
         with pytest.raises(EOFError):
@@ -207,7 +223,7 @@ def test_reading_ends_if_the_terminal_has_gone() -> None:
 def test_reading_can_be_cancelled() -> None:
     async def scene(terminal: Terminal, keys: PipeInput, paper: Paper) -> None:
         reading = asyncio.create_task(terminal.read())
-        await drawn(terminal)
+        await drawn(paper)
         reading.cancel()
         with pytest.raises(asyncio.CancelledError):
             await reading
@@ -234,39 +250,49 @@ def test_typed_lines_are_kept_in_the_history_file(tmp_path: Path) -> None:
         assert file.stat().st_mode & 0o777 == 0o600
 
 
-def test_a_history_file_that_cannot_be_written_causes_no_error(tmp_path: Path) -> None:
+def test_a_history_file_that_cannot_be_written_causes_no_error(
+    tmp_path: Path, caplog: pytest.LogCaptureFixture
+) -> None:
+    async def scene(terminal: Terminal, keys: PipeInput, paper: Paper) -> None:
+        if file.is_file():  # it becomes unwritable after the start
+            file.unlink()
+            file.mkdir()
+        for keystrokes in ("hello\r", "\x1b[A\r"):
+            keys.send_text(keystrokes)
+            assert await terminal.read() == "hello"
+
     (tmp_path / "file").touch()
-    assert isinstance(_history(tmp_path / "file" / "history"), InMemoryHistory)
-    history = _history(tmp_path / "history")
-    (tmp_path / "history").unlink()
-    (tmp_path / "history").mkdir()
-    history.store_string("hello")
-    assert list(history.load_history_strings()) == []
+    for file in (tmp_path / "file" / "history", tmp_path / "history"):
+        play(scene, file)
+    assert caplog.records == []
 
 
 @pytest.mark.parametrize(
-    ("text", "width", "row", "rest"),
+    ("text", "width", "rows"),
     [
-        ("hello you", 8, "hello", "you"),
-        ("hello", 4, "hel", "lo"),
-        ("日本語", 4, "日", "本語"),
-        ("日", 2, "日", ""),
+        ("hello you", 8, ["hello", "you"]),
+        ("hello", 4, ["hel", "lo"]),
+        ("日本語", 4, ["日", "本", "語"]),
+        ("日", 2, ["日"]),
     ],
 )
-def test_a_row_is_broken_at_a_space_or_else_at_the_edge(text: str, width: int, row: str, rest: str) -> None:
-    assert _full_row(text, width) == (row, rest)
+def test_a_row_is_broken_at_a_space_or_else_at_the_edge(text: str, width: int, rows: list[str]) -> None:
+    async def scene(terminal: Terminal, keys: PipeInput, paper: Paper) -> None:
+        terminal.stream(text)
+
+    assert play(scene, columns=width).splitlines() == rows
 
 
 def test_a_streamed_line_appears_on_a_real_terminal() -> None:
     async def main() -> str:
         screen = io.StringIO()
-        output = Vt100_Output(screen, lambda: Size(rows=40, columns=80), enable_cpr=False)
+        output = Screen(screen, lambda: Size(rows=40, columns=80), enable_cpr=False)
         with create_pipe_input() as keys:
             async with Terminal("> ", input=keys, output=output) as terminal:
                 reading = asyncio.create_task(terminal.read())
-                await drawn(terminal)
+                await drawn(output)
                 terminal.stream("Hello")
-                await drawn(terminal)
+                await drawn(output)
                 assert "Hello" in screen.getvalue()
                 assert "…" not in screen.getvalue()
                 keys.send_text("x\r")

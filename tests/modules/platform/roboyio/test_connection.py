@@ -46,9 +46,15 @@ class Base:
 
 async def turtlebot(bus: Bus, base: Base) -> Connection:
     node = ros2.make_node(ros2.Settings(backend="bus", bus=bus.address))
-    made = Connection(roboyio.load_robot("turtlebot"), node, base.sleep, lambda: base.now, 5.0)
+    robot = roboyio.load_robot("turtlebot")
+    advertise = node.advertise
+
+    def with_base(topic: str, *arguments: Any, **options: Any) -> Any:
+        return base if topic == robot.head["yaw"].topic else advertise(topic, *arguments, **options)
+
+    node.advertise = with_base  # type: ignore[method-assign]  # only the `publish` of a base is used
+    made = Connection(robot, node, base.sleep, lambda: base.now, 5.0)
     await made.open()
-    made._ports["yaw"] = base  # type: ignore[assignment]  # only its `publish` is used
     return made
 
 

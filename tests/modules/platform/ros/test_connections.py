@@ -44,13 +44,15 @@ class Reader:
         self.acknowledged += 1
 
 
-def run(main: Callable[[Reader, Connections, socket.socket], Awaitable[None]]) -> None:
+def run(
+    main: Callable[[Reader, Connections, socket.socket], Awaitable[None]], patience: float | None = PATIENCE
+) -> None:
     """Run a test with a `Reader`, its connections, and the socket of a publisher that latches its messages."""
 
     async def run() -> None:
         ours, theirs = socket.socketpair()
         connections = Connections(lambda _: None, print)
-        async with asyncio.timeout(PATIENCE):
+        async with asyncio.timeout(patience):
             connections.from_publisher(1, ours, Publisher("/topic", "Text", "m", latching=True), b"")
             await main(Reader(), connections, theirs)
         connections.close()
@@ -107,32 +109,37 @@ def test_the_rate_limit_of_a_channel_applies_to_direct_and_bridged_messages_toge
         bridge = partial(channel.offer, owed=True)
         taken = reader.taken[1]
 
-        def end_of_pause() -> None:
-            timer = channel.timer
-            assert timer is not None
-            timer._run()  # type: ignore[attr-defined]  # earlier than the timer would
-            timer.cancel()
+        loop = asyncio.get_running_loop()
+        time, passed = loop.time, 0.0
+        loop.time = lambda: time() + passed
+
+        async def end_of_pause() -> None:
+            nonlocal passed
+            ended = asyncio.Event()
+            loop.call_later(1.1e6, ended.set)  # after the timer of the channel
+            passed += 1.2e6
+            await ended.wait()
 
         connections.add(channel)
         theirs.send(wire(b"direct 1"))
         await until(lambda: taken)
         bridge(memoryview(b"bridge 1"))
         assert taken == [b"direct 1"] and not reader.acknowledged
-        end_of_pause()
+        await end_of_pause()
         assert taken == [b"direct 1", b"bridge 1"] and reader.acknowledged == 1
         bridge(memoryview(b"bridge 2"))
         theirs.send(wire(b"direct 2"))
         await until(lambda: bytes(channel.pending or b"") == b"direct 2")
-        end_of_pause()
+        await end_of_pause()
         assert taken[2:] == [b"direct 2"] and reader.acknowledged == 2
-        end_of_pause()
+        await end_of_pause()
         assert channel.timer is None and len(taken) == 3
         bridge(memoryview(b"bridge 3"))
         assert taken[3:] == [b"bridge 3"] and reader.acknowledged == 2
-        end_of_pause()
+        await end_of_pause()
         assert reader.acknowledged == 3
 
-    run(main)
+    run(main, patience=None)  # the clock jumps
 
 
 class Link:
@@ -178,10 +185,16 @@ class Link:
 
 def test_a_late_subscriber_gets_only_the_last_message_of_two_latching_channels() -> None:
     async def main() -> None:
-        node = Node("ros1", Types(1, Definitions([])), lambda _, handle, ready, __: Link(handle, ready))
+        links: list[Link] = []
+
+        def make_link(_: Any, handle: Handle, ready: Callable[[], None], __: Any) -> Link:
+            links.append(Link(handle, ready))
+            return links[-1]
+
+        node = Node("ros1", Types(1, Definitions([])), make_link)
         qos = quality(None, depth=5, latch=True)
         one, two = (node.advertise("/topic", "std_msgs/Int8", latch=True, qos=qos) for _ in range(2))
-        link: Any = node._link  # pyright: ignore[reportPrivateUsage]  # the stand-in for the link
+        [link] = links
         two.publish(1)
         one.publish(2)
         last = wire(b"\2")

@@ -11,7 +11,7 @@ import pytest
 from modules.platform.voiceio.speech import FAST, Scripted, wav
 from modules.platform.voiceio.test_wav_line import run
 from ravestate.errors import PlatformError
-from ravestate.modules.platform.voiceio import Settings, opening, sound
+from ravestate.modules.platform.voiceio import Settings, device_line, opening, sound
 from ravestate.modules.platform.voiceio.ear import Turn
 from ravestate.modules.platform.voiceio.echo import EchoCanceller
 from ravestate.modules.platform.voiceio.recogniser import Recognised
@@ -21,21 +21,27 @@ from ravestate.modules.platform.webio.line import PageLine
 
 
 def open_and_close(line: WavLine | PageLine, monkeypatch: pytest.MonkeyPatch) -> list[EchoCanceller]:
-    """Open and close a conversation. Return its echo cancellers, and check that they are freed."""
+    """Open and close a conversation. Return its echo cancellers, and check that they are closed."""
     made: list[EchoCanceller] = []
+    closed: list[EchoCanceller] = []
 
-    def make() -> EchoCanceller:
-        made.append(EchoCanceller())
-        return made[-1]
+    class Noted(EchoCanceller):
+        def __init__(self) -> None:
+            super().__init__()
+            made.append(self)
+
+        def close(self) -> None:
+            super().close()
+            closed.append(self)
 
     async def talk() -> None:
         conversation = await opening.open_conversation(line, Settings(**FAST["voiceio"]), pytest.fail)
         conversation.close()
 
     monkeypatch.setattr(opening, "Recogniser", Scripted("Hello."))
-    monkeypatch.setattr(opening, "EchoCanceller", make)
+    monkeypatch.setattr(opening, "EchoCanceller", Noted)
     run(talk)
-    assert not any(one._echo for one in made)
+    assert closed == made
     return made
 
 
@@ -60,7 +66,7 @@ def test_the_line_is_closed_if_a_part_that_is_opened_later_is_missing(monkeypatc
     async def opened(_: Settings) -> WavLine:
         return line
 
-    monkeypatch.setattr(opening, "_line", opened)
+    monkeypatch.setattr(opening, "open_line", opened)
     monkeypatch.setattr(opening, "Ear", fail)
 
     async def talk() -> None:
@@ -163,12 +169,12 @@ def test_a_file_and_a_device_can_be_combined(
         opened.append(Devices(*names))
         return opened[0]
 
-    monkeypatch.setattr(opening, "_devices", open_devices)
+    monkeypatch.setattr(device_line, "DeviceLine", open_devices)
     monkeypatch.chdir(tmp_path)
     wav(tmp_path / "in.wav", b"\1\1" * 16000)
 
     async def talk() -> None:
-        line = await opening._line(Settings(source=source, sink=sink))
+        line = await opening.open_line(Settings(source=source, sink=sink))
         line.play(b"\2\2" * 12000)
         block = await anext(aiter(line.blocks()))
         assert any(block) == (source == "in.wav")

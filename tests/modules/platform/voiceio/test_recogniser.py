@@ -67,8 +67,8 @@ def test_the_last_word_is_a_candidate_even_if_it_cannot_end_a_sentence() -> None
     ],
 )
 def test_repetitions_are_cut_off(words: str, at_limit: bool, kept: int) -> None:
-    once = runpy.run_path(str(CHILDREN / "whisper.py"))["_once"]
-    assert once(words.split(), at_limit=at_limit) == kept
+    count = runpy.run_path(str(CHILDREN / "whisper.py"))["without_repetition"]
+    assert count(words.split(), at_limit=at_limit) == kept
 
 
 def test_a_grammar_recognises_its_commands_and_no_other_words() -> None:
@@ -113,9 +113,13 @@ def test_the_error_about_a_missing_model_says_what_to_do() -> None:
     ],
 )
 def test_notes_about_sounds_and_unlikely_words_are_removed_from_the_text(
-    text: str, confidence: float, no_speech: float, kept: str
+    text: str, confidence: float, no_speech: float, kept: str, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    assert recogniser._cleaned(text, confidence, no_speech).text == kept
+    one = Recogniser(Settings(model="tiny.en"))
+    answer = {"text": text, "confidence": confidence, "no_speech": no_speech}
+    monkeypatch.setattr(one.process, "request", lambda *_, **__: (answer, b""))
+    assert one.recognise(b"").text == kept
+    one.close()
 
 
 def test_after_a_crash_the_recogniser_tries_once_more(monkeypatch: pytest.MonkeyPatch) -> None:

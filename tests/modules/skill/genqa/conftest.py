@@ -1,7 +1,9 @@
 """An index of the shipped collection, and an empty one."""
 
+import sqlite3
 from collections.abc import Iterator
 from pathlib import Path
+from typing import Any
 
 import pytest
 
@@ -10,16 +12,36 @@ from ravestate.modules.skill.genqa.index import Index
 
 
 @pytest.fixture(scope="session")
-def collection(tmp_path_factory: pytest.TempPathFactory) -> Iterator[Answerer]:
+def collection_file(tmp_path_factory: pytest.TempPathFactory) -> Path:
+    """Return the file of the index of `collection`."""
+    return tmp_path_factory.mktemp("collection") / "index.sqlite"
+
+
+@pytest.fixture(scope="session")
+def collection(collection_file: Path) -> Iterator[Answerer]:
     """Return an answerer for the collection that comes with Ravestate."""
-    answerer = Answerer(tmp_path_factory.mktemp("collection") / "index.sqlite")
+    answerer = Answerer(collection_file)
     answerer.load()
     yield answerer
     answerer.close()
 
 
 @pytest.fixture
-def index(tmp_path: Path) -> Iterator[Index]:
+def connections(monkeypatch: pytest.MonkeyPatch) -> list[sqlite3.Connection]:
+    """The connections to SQLite files that the test has opened so far, oldest first."""
+    opened: list[sqlite3.Connection] = []
+    connect = sqlite3.connect
+
+    def note(*arguments: Any, **options: Any) -> sqlite3.Connection:
+        opened.append(connect(*arguments, **options))
+        return opened[-1]
+
+    monkeypatch.setattr(sqlite3, "connect", note)
+    return opened
+
+
+@pytest.fixture
+def index(tmp_path: Path, connections: list[sqlite3.Connection]) -> Iterator[Index]:
     """Return an empty index."""
     with Index(tmp_path / "index.sqlite") as index:
         yield index

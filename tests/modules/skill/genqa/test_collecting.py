@@ -1,7 +1,9 @@
 """Only new and changed files are indexed, one after another."""
 
+import hashlib
 import os
 import signal
+import sqlite3
 import subprocess
 import sys
 from collections.abc import Iterator
@@ -59,7 +61,7 @@ def test_unchanged_files_are_not_read_again(index: Index, folder: Path, monkeypa
     assert take_in(index, folder) == {"tram.txt": "unchanged", "ship.md": "unchanged"}
     os.utime(folder / "tram.txt", ns=(1, 1))  # another date, but the same content
     assert take_in(index, folder)["tram.txt"] == "unchanged"
-    monkeypatch.setattr(collecting, "_digest", lambda path: pytest.fail(f"{path} was opened"))
+    monkeypatch.setattr(hashlib, "file_digest", lambda file, _: pytest.fail(f"{file} was opened"))
     assert take_in(index, folder)["tram.txt"] == "unchanged", "the index must keep the new date"
 
 
@@ -158,9 +160,11 @@ def test_an_interrupted_run_keeps_all_complete_files(
     assert take_in(index, folder) == {"a.txt": "unchanged", "tram.txt": "added", "ship.md": "added"}
 
 
-def test_a_run_that_ends_on_a_full_disk_keeps_all_complete_files(index: Index, folder: Path) -> None:
+def test_a_run_that_ends_on_a_full_disk_keeps_all_complete_files(
+    index: Index, connections: list[sqlite3.Connection], folder: Path
+) -> None:
     (folder / "zz.txt").write_text("\n\n".join(f"Passage {n} is of rain." for n in range(20_000)), encoding="utf-8")
-    base = index._base  # pyright: ignore[reportPrivateUsage]
+    [base] = connections
     base.execute(f"PRAGMA max_page_count = {base.execute('PRAGMA page_count').fetchone()[0] + 40}")
     with pytest.raises(rs.PlatformError, match="disk is full"):
         take_in(index, folder)

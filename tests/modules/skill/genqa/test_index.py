@@ -129,10 +129,10 @@ def test_a_process_can_read_while_another_writes(index: Index) -> None:
 # ------------------------------------------------------------------------------------------- errors
 
 
-def test_a_full_disk_is_reported_and_no_passage_is_lost(index: Index) -> None:
+def test_a_full_disk_is_reported_and_no_passage_is_lost(index: Index, connections: list[sqlite3.Connection]) -> None:
     index.put(file(), notes("The tram is red."))
-    pages = index._base.execute("PRAGMA page_count").fetchone()[0]  # pyright: ignore[reportPrivateUsage]
-    index._base.execute(f"PRAGMA max_page_count = {pages + 4}")  # pyright: ignore[reportPrivateUsage]
+    [base] = connections
+    base.execute(f"PRAGMA max_page_count = {base.execute('PRAGMA page_count').fetchone()[0] + 4}")
     with pytest.raises(rs.PlatformError, match="the disk is full: make room"):
         index.put(file("/big.txt"), notes(*(f"Passage {n} is about rain." for n in range(5000))))
     assert found(index, "tram") == ["The tram is red."]
@@ -175,9 +175,9 @@ def test_a_path_where_no_file_can_be_made_is_reported(tmp_path: Path) -> None:
         Index(tmp_path)
 
 
-def test_an_index_that_cannot_be_written_is_reported(index: Index) -> None:
+def test_an_index_that_cannot_be_written_is_reported(index: Index, connections: list[sqlite3.Connection]) -> None:
     index.put(file(), notes("The tram is red."))
-    index._base.execute("PRAGMA query_only = ON")  # pyright: ignore[reportPrivateUsage]
+    connections[0].execute("PRAGMA query_only = ON")
     with pytest.raises(rs.PlatformError, match="cannot be written: name another file"):
         index.put(file(digest="2"), notes("The tram is blue."))
     assert found(index, "tram") == ["The tram is red."]

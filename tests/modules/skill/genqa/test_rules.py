@@ -10,7 +10,7 @@ import ravestate as rs
 from ravestate.errors import DeclarationErrors, PlatformError
 from ravestate.language.chat import Message, Progress
 from ravestate.modules import genqa, rawio, wildtalk
-from ravestate.modules.skill.genqa import Answer, Answerer, places
+from ravestate.modules.skill.genqa import Answer, Answerer, places, rules
 from ravestate.modules.skill.genqa.document import Document, Passage
 from ravestate.modules.skill.genqa.index import Index, IndexedFile
 from ravestate.testing import simulate
@@ -26,18 +26,23 @@ async def chat(ctx: rs.RuleContext) -> None:
 
 @pytest.fixture(autouse=True)
 def apart(monkeypatch: pytest.MonkeyPatch) -> Iterator[None]:
-    """Close the answerers of each test, so that no other test uses them."""
-    made: dict[Any, Answerer] = {}
-    monkeypatch.setattr(places, "_answerers", made)
+    """Close the index of each test."""
+    made: list[Answerer] = []
+
+    def note(settings: genqa.Settings) -> Answerer:
+        made.append(places.answerer_of(settings))
+        return made[-1]
+
+    monkeypatch.setattr(rules, "answerer_of", note)
     yield
-    for answerer in made.values():
+    for answerer in made:
         answerer.close()
 
 
 @pytest.fixture
-def settings(collection: Answerer) -> dict[str, dict[str, Any]]:
+def settings(collection_file: Path) -> dict[str, dict[str, Any]]:
     """The settings for an index that already has the shipped collection."""
-    return {"genqa": {"index": str(collection._path)}}  # pyright: ignore[reportPrivateUsage]
+    return {"genqa": {"index": str(collection_file)}}
 
 
 def test_a_question_is_answered_with_its_source(settings: dict[str, dict[str, Any]]) -> None:

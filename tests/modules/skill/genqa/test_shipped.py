@@ -1,6 +1,7 @@
 """The collection of documents that comes with Ravestate is complete, well-formed and small."""
 
 import re
+import sqlite3
 from importlib.resources import files
 from importlib.resources.abc import Traversable
 
@@ -67,7 +68,9 @@ def test_the_collection_is_indexed_only_once(index: Index) -> None:
 
 def test_another_version_of_the_collection_replaces_the_old_one(index: Index) -> None:
     bring_up(index)
-    index._base.execute("UPDATE files SET digest = 'old'")  # pyright: ignore[reportPrivateUsage]
+    with sqlite3.connect(index.path) as base:
+        base.execute("UPDATE files SET digest = 'old'")
+    base.close()
     size = index.size()
     assert bring_up(index)
     assert index.size() == size

@@ -1,8 +1,10 @@
 """The process of a model, with other programs in place of llama.cpp."""
 
+import os
+import subprocess
+import sys
 import threading
 from pathlib import Path
-from typing import Any
 
 import pytest
 
@@ -82,18 +84,10 @@ def test_the_cause_of_a_failure_is_reported(
     process.close()
 
 
-def test_closing_ends_a_start_in_progress(monkeypatch: pytest.MonkeyPatch, tmp_path: Path) -> None:
-    process = child(monkeypatch, tmp_path, "import sys; sys.stdin.read()")
-    begun, failures = threading.Event(), list[Exception]()
-    spawn = process._spawn
-
-    def spawned() -> Any:
-        try:
-            return spawn()
-        finally:
-            begun.set()
-
-    monkeypatch.setattr(process, "_spawn", spawned)
+def test_closing_ends_a_start_that_is_under_way(monkeypatch: pytest.MonkeyPatch, tmp_path: Path) -> None:
+    begun, failures = tmp_path / "begun", list[Exception]()
+    os.mkfifo(begun)
+    process = child(monkeypatch, tmp_path, f"import sys; open({str(begun)!r}, 'w').close(); sys.stdin.read()")
 
     def start() -> None:
         try:
@@ -103,7 +97,7 @@ def test_closing_ends_a_start_in_progress(monkeypatch: pytest.MonkeyPatch, tmp_p
 
     thread = threading.Thread(target=start)
     thread.start()
-    begun.wait()
+    begun.read_text()  # this ends when the program runs
     process.close()
     thread.join()
     assert "closed while it was loading" in str(failures[0])
@@ -132,8 +126,18 @@ def test_the_process_ends_with_its_last_user(monkeypatch: pytest.MonkeyPatch, tm
 
 
 def test_the_process_ends_with_the_interpreter(monkeypatch: pytest.MonkeyPatch, tmp_path: Path) -> None:
-    process = llama_process.take(child(monkeypatch, tmp_path, READY).key)
-    process.start()
-    llama_process._close_all()
-    assert not process.alive
-    llama_process.drop(process)
+    child(monkeypatch, tmp_path, READY)
+    program = (
+        "import sys, pathlib\n"
+        "from ravestate.modules.skill.wildtalk import llama_process\n"
+        "llama_process.__file__ = sys.argv[1]\n"
+        "process = llama_process.take(llama_process.ModelKey(pathlib.Path('model.gguf'), 512, 1, 1))\n"
+        "process.start()\n"
+        "print(process.pid)\n"
+    )
+    done = subprocess.run(
+        [sys.executable, "-c", program, str(tmp_path / "llama_process.py")], capture_output=True, text=True, timeout=60
+    )
+    assert (done.returncode, done.stderr) == (0, "")
+    with pytest.raises(ProcessLookupError):
+        os.kill(int(done.stdout), 0)

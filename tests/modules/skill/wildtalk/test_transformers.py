@@ -5,6 +5,7 @@ from __future__ import annotations
 import asyncio
 import contextlib
 import json
+import shutil
 import threading
 from collections.abc import Iterator
 from contextlib import aclosing
@@ -62,55 +63,85 @@ def test_the_answer_comes_in_pieces_and_the_same_seed_gives_the_same_answer(tiny
     assert "\n" not in "".join(first).strip()
 
 
-def test_a_model_with_a_chat_template_gets_the_turns_in_this_template(tiny: Path, tmp_path: Path) -> None:
-    folder = tmp_path / "chatty"
-    folder.mkdir()
-    for part in tiny.iterdir():
-        (folder / part.name).write_bytes(part.read_bytes())
-    (folder / "chat_template.jinja").write_text(TEMPLATE)
+def copy_of(tiny: Path, folder: Path, template: str | None = None) -> str:
+    """Copy the model to a new folder, perhaps with a chat template. Return the folder's name."""
+    shutil.copytree(tiny, folder)
+    if template is not None:
+        (folder / "chat_template.jinja").write_text(template)
+    return str(folder)
 
-    async def story() -> tuple[Any, Any]:
-        plain, chatty = TransformersBackend(str(tiny)), TransformersBackend(str(folder))
-        await plain.load()
-        await chatty.load()
-        assert plain._model is not None
-        assert chatty._model is not None
-        return plain._model.prompt(TALK), chatty._model.prompt(TALK)
 
-    assert asyncio.run(story()) == (
-        ("You are a robot.\n\nUser: Hello! How are you?\nAgent:", ("\n",)),
-        ("[system]You are a robot.[user]Hello!\nHow are you?[assistant]", ()),
-    )
+def test_only_a_model_without_a_chat_template_continues_a_line_of_a_transcript(
+    tiny: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    from transformers import AutoTokenizer, GPT2LMHeadModel
+
+    prompts: list[str] = []
+    tokenizer = AutoTokenizer.from_pretrained(str(tiny))
+
+    def generate(_: Any, *, input_ids: Any, streamer: Any, **options: Any) -> None:
+        prompts.append(tokenizer.decode(input_ids[0]))
+        streamer.on_finalized_text("Fine.\nUser: Good.", stream_end=True)
+
+    monkeypatch.setattr(GPT2LMHeadModel, "generate", generate)
+    chatty = copy_of(tiny, tmp_path / "chatty", TEMPLATE)
+    assert asyncio.run(answer(TransformersBackend(str(tiny)))) == ["Fine."]
+    assert "".join(asyncio.run(answer(TransformersBackend(chatty)))) == "Fine.\nUser: Good."
+    assert prompts == [
+        "You are a robot.\n\nUser: Hello! How are you?\nAgent:",
+        "[system]You are a robot.[user]Hello!\nHow are you?[assistant]",
+    ]
 
 
 def test_a_chat_template_that_refuses_the_conversation_is_reported(tiny: Path, tmp_path: Path) -> None:
-    folder = tmp_path / "strict"
-    folder.mkdir()
-    for part in tiny.iterdir():
-        (folder / part.name).write_bytes(part.read_bytes())
-    (folder / "chat_template.jinja").write_text("{{ raise_exception('System role not supported') }}")
+    strict = copy_of(tiny, tmp_path / "strict", "{{ raise_exception('System role not supported') }}")
     with pytest.raises(PlatformError, match=r"the model '.*strict' failed: System role not supported"):
-        asyncio.run(answer(TransformersBackend(str(folder))))
+        asyncio.run(answer(TransformersBackend(strict)))
 
 
-def test_contexts_share_a_model_until_the_last_context_closes_it(tiny: Path) -> None:
+@pytest.fixture
+def loads(monkeypatch: pytest.MonkeyPatch) -> list[str]:
+    """A list to which the library adds the name of each model that it loads."""
+    from transformers import AutoModelForCausalLM
+
+    names: list[str] = []
+    load = AutoModelForCausalLM.from_pretrained
+
+    def note(name: str) -> Any:
+        names.append(name)
+        return load(name)
+
+    monkeypatch.setattr(AutoModelForCausalLM, "from_pretrained", note)
+    return names
+
+
+def end_loaders() -> None:
+    """Wait for the end of the threads that load models, because such a thread still holds its model."""
+    for thread in threading.enumerate():
+        if thread.name == file.LOADER:
+            thread.join()
+
+
+def test_contexts_share_a_model_until_the_last_lets_go_of_it(tiny: Path, tmp_path: Path, loads: list[str]) -> None:
+    name = copy_of(tiny, tmp_path / "shared")
+
     async def story() -> None:
-        one, other = TransformersBackend(str(tiny)), TransformersBackend(str(tiny))
+        one, other, late = (TransformersBackend(name) for _ in range(3))
         done: list[float] = []
         await one.load(done.append)
         await other.load()
         assert done == [1.0]
-        assert one._model is other._model is not None
         await one.close()
-        assert str(tiny) in file._Model._loaded
+        await late.load()
+        assert loads == [name]
+        await late.close()
         await other.close()
         await other.close()
 
     asyncio.run(story())
-    for thread in threading.enumerate():
-        if thread.name == file.LOADER:  # the thread may still be ending
-            thread.join()
-    assert str(tiny) not in file._Model._loaded
+    end_loaders()
+    asyncio.run(TransformersBackend(name).load())
+    assert loads == [name, name]
 
 
 def test_a_conversation_longer_than_the_models_context_loses_its_beginning(tiny: Path) -> None:
@@ -146,7 +177,9 @@ def test_closing_an_answer_stops_the_model(tiny: Path) -> None:
             assert not thread.is_alive()
 
 
-def test_a_download_of_a_model_does_not_delay_the_end_of_the_agent(monkeypatch: pytest.MonkeyPatch) -> None:
+def test_the_agent_ends_while_a_model_is_still_being_fetched(monkeypatch: pytest.MonkeyPatch) -> None:
+    from transformers import AutoTokenizer
+
     fetched = threading.Event()
 
     async def story() -> None:
@@ -155,15 +188,18 @@ def test_a_download_of_a_model_does_not_delay_the_end_of_the_agent(monkeypatch: 
         def fetch(name: str) -> None:
             loop.call_soon_threadsafe(begun.set)
             fetched.wait()
+            raise OSError("there is no network")
 
-        monkeypatch.setattr(file._Model, "shared", fetch)
+        monkeypatch.setattr(AutoTokenizer, "from_pretrained", fetch)
         loading = asyncio.create_task(TransformersBackend("large").load())
         await begun.wait()
         loading.cancel()
 
     asyncio.run(story())
     assert not fetched.is_set()
+    assert all(thread.daemon for thread in threading.enumerate() if thread.name == file.LOADER)
     fetched.set()
+    end_loaders()
 
 
 @pytest.mark.parametrize("name", ["/no/such/folder", "no such name"])
@@ -187,19 +223,21 @@ def test_the_error_names_the_missing_packages(monkeypatch: pytest.MonkeyPatch) -
 
 
 def test_a_model_that_stalls_or_fails_is_reported(tiny: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    from transformers import GPT2LMHeadModel
+
     async def story() -> None:
         backend = TransformersBackend(str(tiny), read_timeout=0.05)
         await backend.load()
         stalled = threading.Event()
-        monkeypatch.setattr(file._Model, "write", lambda *_: stalled.wait())
+        monkeypatch.setattr(GPT2LMHeadModel, "generate", lambda *_, **__: stalled.wait())
         with pytest.raises(PlatformError, match=r"wrote nothing for 0\.05 s"):
             await answer(backend)
         stalled.set()
 
-        def fail(*_: Any) -> None:
+        def fail(*_: Any, **__: Any) -> None:
             raise RuntimeError("out of memory")
 
-        monkeypatch.setattr(file._Model, "write", fail)
+        monkeypatch.setattr(GPT2LMHeadModel, "generate", fail)
         with pytest.raises(PlatformError, match="failed: out of memory"):
             await answer(backend)
 
@@ -258,15 +296,15 @@ def hub(folder: Path) -> Iterator[str]:
         server.server_close()
 
 
-def test_a_model_is_fetched_from_a_hub_once(tiny: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+def test_a_model_is_fetched_from_a_hub_once(
+    tiny: Path, tmp_path: Path, loads: list[str], monkeypatch: pytest.MonkeyPatch
+) -> None:
     from huggingface_hub import HfApi, constants
     from transformers.utils import hub as library
 
     def load() -> None:
         asyncio.run(TransformersBackend("someone/tiny").load())
-        for thread in threading.enumerate():
-            if thread.name == file.LOADER:  # the thread may still hold the model until it ends
-                thread.join()
+        end_loaders()
 
     monkeypatch.setattr(constants, "HF_HUB_CACHE", str(tmp_path))  # the library reads the environment only once
     with hub(tiny) as address:
@@ -276,9 +314,9 @@ def test_a_model_is_fetched_from_a_hub_once(tiny: Path, tmp_path: Path, monkeypa
         )
         monkeypatch.setattr(library, "_hf_api", HfApi(endpoint=address))
         load()
-    assert "someone/tiny" not in file._Model._loaded
     monkeypatch.setattr(constants, "HF_HUB_OFFLINE", True)
     load()
+    assert loads == ["someone/tiny"] * 2
 
 
 def test_a_transcript_has_a_line_for_each_turn() -> None:

@@ -62,7 +62,7 @@ class Terminal:
         self._printing: asyncio.Task[None] | None = None
         self._lost = False
         self._session: PromptSession[str] = PromptSession(
-            self._message, history=_history(history), key_bindings=self._keys(), input=input, output=output
+            self.message, history=_history(history), key_bindings=self._keys(), input=input, output=output
         )
         self._on_key = on_key
         self._session.default_buffer.on_text_changed += self._tell
@@ -126,6 +126,13 @@ class Terminal:
         if line:
             self.show(line)
 
+    def message(self) -> StyleAndTextTuples:
+        """Return the text before the typed line: the streamed line, if there is one, and the prompt."""
+        before: StyleAndTextTuples = []
+        if self._streamed:
+            before = [("", self._streamed), ("", _OPEN if self._session.app.is_done else ""), ("", "\n")]
+        return [*before, ("class:prompt", self._prompt)]
+
     def _keys(self) -> KeyBindings:
         keys = KeyBindings()
         is_full = Condition(lambda: len(self._session.default_buffer.text) >= LONGEST)
@@ -139,12 +146,6 @@ class Terminal:
     def _tell(self, _: object) -> None:
         if self._on_key is not None and self._session.default_buffer.text:
             self._on_key()
-
-    def _message(self) -> StyleAndTextTuples:
-        before: StyleAndTextTuples = []
-        if self._streamed:
-            before = [("", self._streamed), ("", _OPEN if self._session.app.is_done else ""), ("", "\n")]
-        return [*before, ("class:prompt", self._prompt)]
 
     async def _print(self) -> None:
         output = self._session.output

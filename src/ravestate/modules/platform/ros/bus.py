@@ -41,7 +41,8 @@ class Bus:
         """The address to which nodes connect."""
         self._host, self._port = host, port
         self._nodes: set[_BusNode] = set()
-        self._calls: dict[int, _Call] = {}
+        self.calls: dict[int, _Call] = {}
+        """The calls that wait for an answer. The keys are their numbers on the bus."""
         self._numbers = itertools.count(1)
 
     async def __aenter__(self) -> Bus:
@@ -77,11 +78,11 @@ class Bus:
     def leave(self, node: _BusNode) -> None:
         """Forget a node, and send a fault to the nodes that wait for its answers."""
         self._nodes.discard(node)
-        for own, call in list(self._calls.items()):
+        for own, call in list(self.calls.items()):
             if call.caller is node:
-                del self._calls[own]
+                del self.calls[own]
             elif call.server is node:
-                del self._calls[own]
+                del self.calls[own]
                 call.caller.frames.tell(Kind.FAULT, "the node of the service is gone", call.channel, call.number)
 
     def find(self, kind: str, name: str) -> list[tuple[_BusNode, int, dict[str, Any]]]:
@@ -115,12 +116,12 @@ class Bus:
             )
             return
         own = next(self._numbers)
-        self._calls[own] = _Call(caller, channel, number, server)
+        self.calls[own] = _Call(caller, channel, number, server)
         server.frames.send(Kind.CALL, place, own, body)
 
     def answer(self, kind: Kind, own: int, body: memoryview) -> None:
         """Pass on an answer to the caller of the call that has the number `own` on the bus."""
-        call = self._calls.pop(own, None)
+        call = self.calls.pop(own, None)
         if call is not None and kind is Kind.FAULT:
             call.caller.frames.tell(Kind.FAULT, bytes(body).decode(), call.channel, call.number)
         elif call is not None:
@@ -128,9 +129,9 @@ class Bus:
 
     def cancel(self, caller: _BusNode, channel: int, number: int) -> None:
         """Forget a call whose caller no longer waits."""
-        self._calls = {
+        self.calls = {
             own: call
-            for own, call in self._calls.items()
+            for own, call in self.calls.items()
             if (call.caller, call.channel, call.number) != (caller, channel, number)
         }
 

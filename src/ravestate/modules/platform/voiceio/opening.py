@@ -117,7 +117,7 @@ async def open_conversation(given: Line | None, settings: Settings, warn: Callab
         await asyncio.gather(asyncio.to_thread(recogniser.load), asyncio.to_thread(voice.load))
         if (melody := await asyncio.to_thread(_melody)) is None:
             warn("there is no model for the end of a turn (smart-turn): pauses are longer. `make voice` fetches it")
-        line = given or await _line(settings)
+        line = given or await open_line(settings)
         ear = await asyncio.to_thread(Ear, settings.speech, settings.pause, _canceller(line, settings, warn))
     except BaseException:
         if line is not None and given is None:
@@ -134,7 +134,7 @@ def is_file(name: str) -> bool:
     return Path(name).suffix.lower() in (".wav", ".ogg", ".mp3", ".flac", ".m4a", ".opus")
 
 
-async def _line(settings: Settings) -> Line:
+async def open_line(settings: Settings) -> Line:
     """Open a line to the files or devices that the settings name. The source may be a file, and the sink a device."""
     source, sink = _file(settings.source), _file(settings.sink)
     by_clock = sink is not None or not settings.sink

@@ -71,7 +71,8 @@ class Server:
     """
 
     def __init__(self, agent: Agent, routes: Iterable[BaseRoute] = (), inside: str | None = None) -> None:
-        self._app = make_app(agent, routes, inside)
+        self.app = make_app(agent, routes, inside)
+        """The application that the server serves."""
         self._settings: Settings = agent.settings["webio"]  # type: ignore[assignment]  # the module's own
         if self._settings.token is None and not is_local(self._settings.host):
             raise PlatformError(
@@ -80,7 +81,8 @@ class Server:
                 "python -c 'import secrets; print(secrets.token_urlsafe())'"
             )
         self._socket: socket.socket | None = None
-        self._uvicorn: _Uvicorn | None = None
+        self.uvicorn: _Uvicorn | None = None
+        """The uvicorn server with the connections; None before the start."""
         self._task: asyncio.Task[None] | None = None
         self._saved = contextlib.ExitStack()
 
@@ -89,9 +91,9 @@ class Server:
         settings = self._settings
         self._socket = _listen(settings.host, settings.port)
         limits = functools.partial(LimitedHTTP, per_address=settings.per_address, most=_most(2 * settings.sessions))
-        self._uvicorn = _Uvicorn(
+        self.uvicorn = _Uvicorn(
             uvicorn.Config(
-                self._app,
+                self.app,
                 http=cast("Any", limits),
                 ws=LimitedWebSocket,
                 lifespan="on",
@@ -107,8 +109,8 @@ class Server:
                 date_header=False,
             )
         )
-        self._task = asyncio.create_task(self._uvicorn.serve(sockets=[self._socket]))
-        listening = asyncio.create_task(self._uvicorn.listening.wait())
+        self._task = asyncio.create_task(self.uvicorn.serve(sockets=[self._socket]))
+        listening = asyncio.create_task(self.uvicorn.listening.wait())
         await asyncio.wait((self._task, listening), return_when=asyncio.FIRST_COMPLETED)
         listening.cancel()
         if self._task.done():
@@ -118,10 +120,10 @@ class Server:
 
     async def __aexit__(self, *_: object) -> None:
         """End the conversations cleanly, and stop the server."""
-        assert self._uvicorn is not None and self._task is not None  # set by `__aenter__`
+        assert self.uvicorn is not None and self._task is not None  # set by `__aenter__`
         with self._saved:
-            await self._app.state.sessions.close()
-            self._uvicorn.told.set()
+            await self.app.state.sessions.close()
+            self.uvicorn.told.set()
             await self._task
 
     @property

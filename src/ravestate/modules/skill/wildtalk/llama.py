@@ -52,7 +52,8 @@ class LlamaBackend:
         cores = len(os.sched_getaffinity(0)) if hasattr(os, "sched_getaffinity") else os.cpu_count() or 1
         self._options = (context_tokens, parallel, threads or max(1, cores // 2))
         self._read_timeout = read_timeout
-        self._process: LlamaProcess | None = None
+        self.process: LlamaProcess | None = None
+        """The process of the model; None unless the model is loading or loaded."""
         self._client: OpenAIBackend | None = None
         self._loading = asyncio.Lock()
 
@@ -62,7 +63,7 @@ class LlamaBackend:
         Cancelling this call ends the model's process, unless another context waits for it as well.
         """
         async with self._loading:
-            if self._client is not None and self._process is not None and self._process.alive:
+            if self._client is not None and self.process is not None and self.process.alive:
                 return
             await self._close()
             loop = asyncio.get_running_loop()
@@ -72,13 +73,13 @@ class LlamaBackend:
                     loop.call_soon_threadsafe(progress, fraction)
 
             path = await asyncio.to_thread(checked_model, self._model_path)
-            self._process = llama_process.take(ModelKey(path, *self._options))
+            self.process = llama_process.take(ModelKey(path, *self._options))
             try:
-                address = await asyncio.to_thread(self._process.start, report)
+                address = await asyncio.to_thread(self.process.start, report)
                 self._client = OpenAIBackend(
                     f"{address}/v1",
                     "",
-                    api_key=SecretStr(self._process.secret),
+                    api_key=SecretStr(self.process.secret),
                     read_timeout=self._read_timeout,
                     extra={"repeat_penalty": 1.1, "cache_prompt": True},
                 )
@@ -95,14 +96,14 @@ class LlamaBackend:
     async def stream(self, messages: Sequence[Message], **options: Any) -> AsyncGenerator[str, None]:
         """See `Backend.stream`. The model's own chat template is used."""
         await self.load()
-        client, process = self._client, self._process
+        client, process = self._client, self.process
         assert client is not None and process is not None
         try:
             async with aclosing(client.stream(messages, **options)) as pieces:
                 async for piece in pieces:
                     yield piece
         except PlatformError as error:
-            if self._process is not process:
+            if self.process is not process:
                 return  # the backend was closed in the middle of an answer
             # The connection breaks a few milliseconds before the process ends.
             grace = 0.5 if error.__cause__ is not None else 0.0
@@ -113,7 +114,7 @@ class LlamaBackend:
             raise
 
     async def _close(self) -> None:
-        process, self._process = self._process, None
+        process, self.process = self.process, None
         client, self._client = self._client, None
         if client is not None:
             await client.close()

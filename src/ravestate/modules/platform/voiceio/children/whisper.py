@@ -72,7 +72,7 @@ def load(config: dict[str, Any]) -> Any:
         parts = [tokenizer.decode([token]) for token in tokens]
         begins = [at for at, part in enumerate(parts) if at == 0 or part.startswith(" ")]
         words = [_bare("".join(parts[at:end])) for at, end in zip(begins, [*begins[1:], len(parts)], strict=True)]
-        kept = _once(words, at_limit=len(tokens) >= len(steps))
+        kept = without_repetition(words, at_limit=len(tokens) >= len(steps))
         count = begins[kept] if kept < len(begins) else len(tokens)
         spoken = [number for number in range(kept) if words[number]]
         text = tokenizer.decode(tokens[:count]).strip()
@@ -114,7 +114,7 @@ def load(config: dict[str, Any]) -> Any:
     return handle
 
 
-def _once(words: list[str], *, at_limit: bool) -> int:
+def without_repetition(words: list[str], *, at_limit: bool) -> int:
     """Return how many words come before the repetition of a phrase. If nothing is repeated, count all words."""
     for length in range(1 if at_limit else PHRASE, len(words)):
         if all(words[at] == words[at - length] for at in range(length, len(words))):
