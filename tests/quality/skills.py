@@ -66,7 +66,7 @@ def talk_before(sentence: str) -> tuple[str, Talk, dict[str, tuple[str, ...]]]:
 def meaning_of(sentence: str) -> Meaning:
     """Return what the user tells or asks about themselves. The sentence can begin with its situation in brackets."""
     text, talk, known = talk_before(sentence)
-    _load()
+    load()
     return understand(analysed(text), talk, known, now=1.0, within=90.0)
 
 
@@ -82,14 +82,14 @@ def persqa_facts(sentence: str) -> str:
 
 
 @cache
-def _load() -> None:
+def load() -> None:
     for name in (*MATCHERS, "answers"):
         bundled_matcher(name).load()
     kinds.load()
 
 
 @cache
-def _listener() -> Listener:
+def listener() -> Listener:
     bundled_matcher("acts").load()
     bundled_matcher("feelings").load()
     listener = Listener()
@@ -99,19 +99,7 @@ def _listener() -> Listener:
 
 def smalltalk(sentence: str) -> str:
     """Return the listener's answer to an utterance that begins a conversation."""
-    return _listener().answer(Heard(sentence, analysed(sentence)), State(), random.Random(0)).text
-
-
-def facts(sentence: str) -> str:
-    """Return the facts in a sentence, if no fact is known and no question was asked before.
-
-    Semicolons join the facts: ``topic=value``, ``topic=a|b``, ``not topic=value``, or ``Subject / verb / object`` if no
-    topic fits. Without facts, return ``-``.
-    """
-    _load()
-    reader = Reader(analysed(sentence))
-    free = [f"{told.subject} / {told.verb} / {told.object}" for told in told_in(reader)]
-    return "; ".join([*map(fact_label, sorted(reader.facts(), key=lambda fact: fact.topic)), *free]) or "-"
+    return listener().answer(Heard(sentence, analysed(sentence)), State(), random.Random(0)).text
 
 
 def fact_label(fact: Fact) -> str:
@@ -134,7 +122,7 @@ def about_rows(sentence: str) -> str:
 @cache
 def agentqa_remarks(sentence: str) -> str:
     """Return the topic of a remark that the agent must not take for small talk."""
-    _load()
+    load()
     found = remark_in(sentence, read_life(), ["Robin"]) or act_in(analysed(sentence), read_life())
     return "-" if found is None else found.topic
 

@@ -14,8 +14,8 @@ from datetime import date, time
 from typing import Any, cast
 
 from quality import measure
-from quality.modules import _seen, prepare
-from quality.skills import _listener, _load
+from quality.modules import analysed, prepare
+from quality.skills import listener, load
 from ravestate.language.addressing import addressed
 from ravestate.language.lexicon import load_lexicon
 from ravestate.language.moves import bundled_moves
@@ -68,7 +68,7 @@ def addressed_rows(sentence: str) -> str:
 
 def closing_rows(sentence: str) -> str:
     """Return the question that ends an utterance, after the kind of the words before it."""
-    found = _seen(sentence).closing
+    found = analysed(sentence).closing
     if found is None:
         return measure.NONE
     return f"{'returned' if found.returned else 'remark' if found.remarks else 'told'}: {found.text}"
@@ -76,7 +76,7 @@ def closing_rows(sentence: str) -> str:
 
 def introductions_rows(sentence: str) -> str:
     """Return the words in the place of the user's name, and what else the user says, if the name is sure."""
-    seen = _seen(sentence)
+    seen = analysed(sentence)
     if (found := seen.introduction) is not None:
         return f"{found.name} / {found.rest}"
     return next((found.name for found in introductions_in(seen.tree)), measure.NONE)
@@ -103,20 +103,20 @@ def recalled_rows(sentence: str) -> str:
     situation, text = _parts(sentence)
     said: list[Told] = []
     for one in situation.split(" | "):
-        said += told_in(Reader(_seen(one)), said)[1]
-    return " | ".join(one.text for one in recalled(Reader(_seen(text)), said, {})) or measure.NONE
+        said += told_in(Reader(analysed(one)), said)[1]
+    return " | ".join(one.text for one in recalled(Reader(analysed(text)), said, {})) or measure.NONE
 
 
 def charades_rows(sentence: str) -> str:
     """Return the move that an utterance makes in the game of charades. Its situation is the step of the game."""
     step, text = _parts(sentence)
-    move = charades.understand(_seen(text), moves_of(cast("Any", step)))
+    move = charades.understand(analysed(text), moves_of(cast("Any", step)))
     return measure.NONE if move is None else f"{move.kind} {move.name}".strip()
 
 
 def turned_rows(sentence: str) -> str:
     """Return a statement from the agent's view, the person of its subject, and its tense."""
-    found = max(statements_in(_seen(sentence), material().living), key=lambda one: one.start, default=None)
+    found = max(statements_in(analysed(sentence), material().living), key=lambda one: one.start, default=None)
     return f"{found.echo} / {found.subject} / {found.tense}" if found is not None and found.echo else measure.NONE
 
 
@@ -124,7 +124,7 @@ def repairs_rows(sentence: str) -> str:
     """Return how a user objects to the agent's last answer. The situation is their utterance before it, and the answer."""
     situation, text = _parts(sentence)
     before, said = situation.split(" | ")
-    found = repair_in(_seen(text), State(said=(said,), before=before))
+    found = repair_in(analysed(text), State(said=(said,), before=before))
     return measure.NONE if found is None else f"{found.kind}: {found.again.lower().rstrip('.')}".rstrip(": ")
 
 
@@ -136,25 +136,25 @@ def refused_rows(sentence: str) -> str:
 
 def moments_rows(sentence: str) -> str:
     """Return the situation that the listener finds in an utterance at the beginning of a conversation."""
-    state = _listener().answer(Heard(sentence, _seen(sentence)), State(), random.Random(0)).state
+    state = listener().answer(Heard(sentence, analysed(sentence)), State(), random.Random(0)).state
     return state.moment or measure.NONE
 
 
 def answer_tones_rows(sentence: str) -> str:
     """Return the tone of the listener's answer to an utterance at the beginning of a conversation."""
-    return _listener().answer(Heard(sentence, _seen(sentence)), State(), random.Random(0)).state.tone or measure.NONE
+    return listener().answer(Heard(sentence, analysed(sentence)), State(), random.Random(0)).state.tone or measure.NONE
 
 
 def asked_rows(sentence: str) -> str:
     """Return the kind of a question that asks for no fact, and the area of life that it is about."""
-    asked = hear(material(), Heard(sentence, _seen(sentence)), State()).asked
+    asked = hear(material(), Heard(sentence, analysed(sentence)), State()).asked
     parts = () if asked is None else (asked.kind, asked.area.name if asked.area else "")
     return " / ".join(filter(None, parts)) or measure.NONE
 
 
 def highlights_rows(sentence: str) -> str:
     """Return the phrase of an utterance that says most, and the tense of its statement."""
-    found = taken_from(_seen(sentence), material().living, "")
+    found = taken_from(analysed(sentence), material().living, "")
     return f"{found.highlight} / {found.told.tense}" if found is not None and found.highlight else measure.NONE
 
 
@@ -181,7 +181,7 @@ FLOORS = {name: 1 - max(0.05, 1.01 / len(measure.labelled(name))) for name in SE
 
 def result(name: str) -> measure.Result:
     """Measure the set `name`. If a step has several results, one of them must be the label."""
-    _load()
+    load()
     charades.load()
     bundled_moves().load()
     cases = measure.labelled(name)

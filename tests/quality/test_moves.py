@@ -3,8 +3,8 @@
 from __future__ import annotations
 
 from quality.measure import labelled
-from quality.modules import _seen, prepare
-from quality.skills import _listener
+from quality.modules import analysed, prepare
+from quality.skills import listener
 from ravestate.language.examples import bundled
 from ravestate.language.moves import Move, bundled_moves
 from ravestate.language.normal import normalise
@@ -43,12 +43,12 @@ def test_at_most_three_sentences_of_the_set_are_also_examples() -> None:
 
 
 def test_most_situations_in_unseen_conversations_are_those_of_the_right_move() -> None:
-    _listener()
+    listener()
     bundled_moves().load()
     prepare(text for text, _ in ROWS)
     fitting: list[bool] = []
     for text, move in ROWS:
-        read = _seen(text)
+        read = analysed(text)
         hearing = Hearing(set(), moves=likely(material(), read))
         found, _, score = moment_of(material(), read, hearing, asking_sentence(read))
         if found is not None and score >= SURE:
