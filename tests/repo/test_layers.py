@@ -132,6 +132,25 @@ def test_all_modules_are_folders_with_the_same_files() -> None:
     assert not missing, "\n".join(missing)
 
 
+def test_a_runner_is_used_only_by_its_methods() -> None:
+    guilty = [
+        f"{path_of(file)}:{node.lineno}: {ast.unparse(node)}"
+        for file in files_of(".")
+        for node in ast.walk(ast.parse(file.read_text(encoding="utf-8")))
+        if isinstance(node, ast.Attribute)
+        for owner in (ast.unparse(node.value),)
+        if (
+            # No other object sets an attribute of a runner, or uses its private ones.
+            (owner.endswith("runner") and (isinstance(node.ctx, ast.Store) or node.attr.startswith("_")))
+            or (node.attr == "_runner" and owner != "self")
+            # The helpers for tests use only what is public.
+            or (path_of(file).startswith("testing/") and node.attr.startswith("_") and owner not in ("self", "timer"))
+        )
+        and not node.attr.startswith("__")
+    ]
+    assert not guilty, "\n".join(guilty)
+
+
 def test_imports_form_no_cycle() -> None:
     """Imports at the top of files form no cycle. Imports within functions run later, so they do not count."""
     files = {module_name(file): file for file in SOURCE.rglob("*.py")}
