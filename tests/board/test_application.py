@@ -67,6 +67,28 @@ def test_simultaneous_uploads_are_read_one_at_a_time(trace: bytes, monkeypatch: 
     assert taken == ["begins", "ends"] * 2
 
 
+def test_a_conversation_is_answered_while_a_recording_is_read(trace: bytes, monkeypatch: pytest.MonkeyPatch) -> None:
+    async def slowly(work: Callable[..., Any], *arguments: Any) -> Any:
+        await passing(30)
+        return work(*arguments)
+
+    @in_virtual_time
+    async def test() -> None:
+        async with board() as app, client(app) as browser, Visit(app) as visit:
+            await visit.hello()
+            with monkeypatch.context() as patch:
+                patch.setattr(asyncio, "to_thread", slowly)
+                upload = asyncio.create_task(browser.post("/board/recordings", content=trace))
+                await passing(1)
+                visit.say("Is it raining?")
+                while "agent: Yes." not in await visit.messages(1):
+                    pass
+                assert not upload.done()
+                assert (await upload).status_code == 201
+
+    test()
+
+
 async def drops(data: bytes, every: float, each: int) -> AsyncGenerator[bytes]:
     """Yield parts of `each` bytes, with a pause of `every` seconds after each."""
     for start in range(0, len(data), each):

@@ -2,6 +2,7 @@
 
 import dataclasses
 import json
+import sys
 from collections.abc import Callable
 from pathlib import Path
 from typing import Any
@@ -179,3 +180,19 @@ def test_the_record_of_a_failure_keeps_its_traceback() -> None:
     read = checked_record(data)
     assert data_of(read) == data
     assert "error" not in data_of(Settled(1.0, 1, "m:draw", "done", "", True))
+
+
+def test_a_list_of_faulty_records_is_refused_at_its_first_fault() -> None:
+    file = {"format": "ravestate-trace", "v": 1, "records": [1] * (MOST_VALUES - 100)}
+    # A message for each of these records would need more than the memory limit.
+    with pytest.raises(ValueError, match=r"records\.0: Input should be a valid dictionary"):
+        read_apart(json.dumps(file).encode())
+
+
+@pytest.mark.skipif(sys.platform != "linux", reason="other systems do not limit the memory of a process")
+def test_a_file_that_would_fill_the_memory_is_refused(tmp_path: Path) -> None:
+    recorded(tmp_path / "trace.json")
+    file = json.loads((tmp_path / "trace.json").read_bytes())
+    file["policy"]["rules"] = [1] * (MOST_VALUES - 10_000)
+    with pytest.raises(ValueError, match="reading it takes more than 2 GB of memory"):
+        read_apart(json.dumps(file).encode())

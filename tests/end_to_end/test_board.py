@@ -6,6 +6,7 @@ import contextlib
 import gzip
 import json
 import os
+import re
 import struct
 from collections.abc import AsyncGenerator
 from pathlib import Path
@@ -128,7 +129,7 @@ async def painted(page: Page, rule: str) -> set[str]:
                 const seen = new Set();
                 for (let i = 0; i < data.length; i += 4) seen.add([data[i], data[i + 1], data[i + 2]].join());
                 const rgb = hex => [1, 3, 5].map(at => parseInt(hex.slice(at, at + 2), 16)).join();
-                return ["waiting", "running", "done", "resigned", "failed"].filter(
+                return ["waiting", "running", "done", "interrupted", "resigned", "failed"].filter(
                     state => seen.has(rgb(style.getPropertyValue(`--${state}-light`).trim())));
             }""",
             rule,
@@ -319,7 +320,9 @@ async def test_an_exported_trace_can_be_opened_as_a_recording(stage: Stage, tmp_
         async with page.expect_download() as downloading:
             await page.get_by_role("button", name="Export").click()
         file = tmp_path / "trace.json"
-        await (await downloading.value).save_as(file)
+        download = await downloading.value
+        assert re.fullmatch(r"elske-.+-\d{4}-\d\d-\d\dt\d\d-\d\d-trace\.json", download.suggested_filename)
+        await download.save_as(file)
         await page.get_by_label("Open a recorded trace").set_input_files(file)
         await expect(page.locator(".status")).to_have_text("recording")
         await name(page, "keeper:small_talk").click()
@@ -654,6 +657,33 @@ async def test_the_board_follows_the_newest_conversation_of_its_browser(stage: S
         later = await board.context.new_page()
         await later.goto(f"{host.address}board/")
         await until_lane(later, "keeper:small_talk", "done")
+
+
+dancer = rs.Module("dancer", requires=(rawio,))
+
+
+@dancer.rule(when=rawio.input.changed, writes=rawio.output, until=rawio.input.changed)
+async def dance(ctx: rs.RuleContext) -> None:
+    """Dance until somebody speaks."""
+    await ctx.sleep(600.0)
+
+
+@on_stage
+async def test_the_timeline_has_a_sign_for_an_interrupted_run(stage: Stage) -> None:
+    async with served(dancer) as host, stage.open(f"{host.address}board/", color_scheme="light") as page:
+        await say(page, "Dance!")
+        await page.wait_for_function(
+            "() => window.raveboard.trace.lanes.get('dancer:dance')?.bars[0]?.phases.at(-1)?.state === 'running'"
+        )
+        await drawn(page)
+        assert "interrupted" not in await painted(page, "dancer:dance")
+        await say(page, "Stop.")
+        await page.wait_for_function(
+            "() => window.raveboard.trace.lanes.get('dancer:dance')?.bars[0]?.outcome === 'interrupted'"
+        )
+        await page.get_by_role("button", name="All", exact=True).click()
+        await drawn(page)
+        assert "interrupted" in await painted(page, "dancer:dance")
 
 
 clumsy = rs.Module("clumsy", requires=(rawio,))

@@ -225,6 +225,19 @@ def test_an_older_activation_takes_the_spikes_that_a_merge_brings_together(play:
         assert heard == ["first"]
 
 
+def test_a_rule_gets_the_spikes_that_two_merges_bring_together(play: Any) -> None:
+    m = rs.Module("m")
+    a, b, s0, s1, heard = m.signal("a"), m.signal("b"), m.signal("s0"), m.signal("s1"), list[Any]()
+    emitter(m, "r0", b, s0)
+    emitter(m, "r2", a & b, s1)
+    hearer(m, "r1", a & s0 & s1, a, heard)
+    with play(m) as sim:
+        sim.emit(a, "input")
+        sim.emit(b)
+        sim.advance(10.0)
+        assert heard == ["input"]
+
+
 def test_an_activation_that_has_lost_a_spike_can_take_spikes_of_other_groups(play: Any) -> None:
     m = rs.Module("m")
     a, s, v, out = m.signal("a"), m.signal("s"), m.signal("v"), output(m)

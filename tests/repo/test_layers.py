@@ -136,6 +136,25 @@ def test_every_module_is_a_folder_with_an_init_file_and_a_readme() -> None:
     assert not missing, "\n".join(missing)
 
 
+def test_a_runner_is_used_only_by_its_methods() -> None:
+    guilty = [
+        f"{path_of(file)}:{node.lineno}: {ast.unparse(node)}"
+        for file in files_of(".")
+        for node in ast.walk(ast.parse(file.read_text(encoding="utf-8")))
+        if isinstance(node, ast.Attribute)
+        for owner in (ast.unparse(node.value),)
+        if (
+            # No other object sets an attribute of a runner, or uses its private ones.
+            (owner.endswith("runner") and (isinstance(node.ctx, ast.Store) or node.attr.startswith("_")))
+            or (node.attr == "_runner" and owner != "self")
+            # The helpers for tests use only what is public.
+            or (path_of(file).startswith("testing/") and node.attr.startswith("_") and owner not in ("self", "timer"))
+        )
+        and not node.attr.startswith("__")
+    ]
+    assert not guilty, "\n".join(guilty)
+
+
 @pytest.mark.parametrize("name", BUILT_IN)
 def test_a_module_declares_its_names_before_its_rules(name: str, monkeypatch: pytest.MonkeyPatch) -> None:
     """`names.py` declares all signals and slots and no rule. A module has `rules.py` if, and only if, it has rules."""

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import contextlib
 import dataclasses
 import io
 import json
@@ -15,7 +16,7 @@ from collections import OrderedDict
 from collections.abc import Iterable
 from dataclasses import dataclass
 from pathlib import Path
-from typing import Any, Literal
+from typing import Annotated, Any, Literal
 
 import pydantic
 
@@ -34,6 +35,12 @@ MOST_VALUES = 6_000_000
 of 64 MB have about four million commas and brackets."""
 
 LONGEST = 120  # the maximum number of seconds that reading a file may take
+
+MOST_MEMORY = 2 * 1024**3
+"""The maximum address space of the process that reads an uploaded file, in bytes. A valid recording of 64 MB needs a
+third of it; a file with millions of faulty values would need several times as much."""
+
+TOO_MUCH = f"reading it takes more than {MOST_MEMORY // 1024**3} GB of memory"
 
 CHUNK = 1000
 """The number of records in a message between processes. It is small, because unpacking a message stops all other
@@ -78,7 +85,7 @@ class Recordings:
 class _File(pydantic.BaseModel):
     format: Literal["ravestate-trace"]
     v: Literal[1]
-    records: list[TraceRecord]
+    records: Annotated[list[TraceRecord], pydantic.FailFast()]
     policy: Description
     title: str = "Ravestate"
     whole: bool = False
@@ -142,6 +149,8 @@ def read_apart(data: bytes) -> Recording:
         done = subprocess.run(command, input=data, capture_output=True, env=paths, timeout=LONGEST, check=False)
     except subprocess.TimeoutExpired:
         raise ValueError(f"reading it takes more than {LONGEST} s") from None
+    if done.returncode < 0:  # a signal: pydantic's core aborts if it gets no memory
+        raise ValueError(TOO_MUCH)
     if done.returncode:
         raise ValueError(done.stderr.decode("utf-8", "replace").strip() or "reading it fails")
     chunks = io.BytesIO(done.stdout)
@@ -160,15 +169,27 @@ def _parsed(text: str) -> Any:
     return json.loads(well_formed(json.dumps(found, ensure_ascii=False)))
 
 
+def _limit_memory() -> None:
+    """Limit the memory of this process, where the system can."""
+    with contextlib.suppress(ImportError, ValueError, OSError):  # Windows; a lower limit is set already; macOS
+        import resource
+
+        resource.setrlimit(resource.RLIMIT_AS, (MOST_MEMORY, MOST_MEMORY))
+
+
 def _main() -> int:
     """Read a trace from the standard input, and write it to the standard output for `read_apart`."""
     # With -m, the name of this module is `__main__`, but the pickles need its real name. So import it by that name.
     from ravestate.board import trace_file
 
+    _limit_memory()
     try:
         read = trace_file.read_trace(sys.stdin.buffer.read())
     except ValueError as error:
         sys.stderr.write(str(error))
+        return 1
+    except MemoryError:
+        sys.stderr.write(TOO_MUCH)
         return 1
     pickle.dump((read.title, read.description, read.whole), sys.stdout.buffer)
     for start in range(0, len(read.records), CHUNK):

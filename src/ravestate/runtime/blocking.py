@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import logging
-from time import perf_counter, thread_time
+from time import perf_counter, process_time, thread_time
 from typing import Any, Final
 
 from ravestate.declare.rule import Rule
@@ -24,6 +24,11 @@ ASLEEP = 0.05
 """A step counts as sleeping only if its sleeps are longer than this on average (seconds). Shorter sleeps are waits for
 the interpreter's lock: a thread that waits for the lock sleeps again and again, for about 5 ms each time."""
 
+OTHERS = 0.5
+"""A step does not count as sleeping if other threads of the process computed for more than this share of its sleeps. The
+step may then have waited for them. For instance, a new thread starts only when it gets the interpreter's lock, and its
+caller sleeps until then. A library that loads a model holds that lock for 0.2 s at a time."""
+
 log = logging.getLogger("ravestate")
 
 
@@ -31,20 +36,21 @@ class StepTimer:
     """Measures the steps of async rules, and warns of steps that block the loop. Use it on the loop's thread only.
 
     A step blocks the loop if it computes, or sleeps, for longer than `BLOCKING`. The time for which the thread waits
-    for a processor or for the interpreter's lock does not count, so a busy machine causes no warning. The system counts
-    how often the thread slept voluntarily, and how often the scheduler preempted it. If the scheduler preempted the
-    thread during a step, the timer ignores the sleeps of this step. Windows and macOS do not have these numbers; there,
-    the timer ignores all sleeps.
+    for a processor or for other threads does not count, so a busy machine causes no warning. The system counts how often
+    the thread slept voluntarily, and how often the scheduler preempted it. If the scheduler preempted the thread during a
+    step, the timer ignores the sleeps of this step. Windows and macOS do not have these numbers; there, the timer ignores
+    all sleeps.
 
     Reading the CPU time costs as much as a short rule. One reading serves all steps that begin within `FRESH` seconds,
     so a reported time may be too long by that much.
     """
 
-    __slots__ = ("_cpu", "_fresh_until", "_sleeps")
+    __slots__ = ("_cpu", "_cpu_of_all", "_fresh_until", "_sleeps")
 
     def __init__(self) -> None:
         self._fresh_until = 0.0
-        self._cpu = 0.0
+        self._cpu = 0.0  # the CPU time of this thread
+        self._cpu_of_all = 0.0  # the CPU time of all threads of the process
         self._sleeps = 0, 0
 
     def begin(self) -> float:
@@ -53,6 +59,7 @@ class StepTimer:
         if now > self._fresh_until:
             self._fresh_until = now + FRESH
             self._cpu = thread_time()
+            self._cpu_of_all = process_time()
             self._sleeps = _sleeps()
         return now
 
@@ -69,12 +76,14 @@ class StepTimer:
                 )
 
     def _judge(self, took: float) -> tuple[float, str]:
-        computed = min(took, thread_time() - self._cpu)
+        computed = thread_time() - self._cpu
         if computed > BLOCKING:
-            return computed, "computing"
-        chosen, forced = (now - before for now, before in zip(_sleeps(), self._sleeps, strict=True))
+            return min(took, computed), "computing"
         slept = took - computed
-        return slept if chosen and not forced and slept / chosen > ASLEEP else 0.0, "sleeping"
+        others = process_time() - self._cpu_of_all - computed
+        chosen, forced = (now - before for now, before in zip(_sleeps(), self._sleeps, strict=True))
+        asleep = chosen and not forced and slept / chosen > ASLEEP and others < OTHERS * slept
+        return slept if asleep else 0.0, "sleeping"
 
 
 def _sleeps() -> tuple[int, int]:

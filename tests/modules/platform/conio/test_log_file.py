@@ -29,14 +29,53 @@ async def repeat(ctx):
 rs.run(parrot, conio)
 """
 
+SLOW_AGENT = """
+import logging
+import threading
+import time
+import ravestate as rs
+from ravestate.modules import conio, rawio
+from ravestate.runtime import plain_rules, workers
+
+workers.SHARE = 1
+plain_rules.STARVED = 0.01
+logging.basicConfig()
+parrot = rs.Module("parrot", requires=[rawio])
+warned = threading.Event()
+
+class Watch(logging.Handler):
+    def emit(self, record):
+        if "wait for a worker thread" in record.getMessage():
+            warned.set()
+
+logging.getLogger("ravestate").addHandler(Watch())
+
+@parrot.rule(when=rawio.input.changed, writes=rawio.output)
+async def repeat(ctx):
+    begun = time.thread_time()
+    while time.thread_time() < begun + 0.15:
+        pass
+    ctx[rawio.output] = ctx.payload(rawio.input.changed).upper()
+
+@parrot.rule(when=rawio.input.changed)
+def hang(ctx):
+    warned.wait(20)
+
+@parrot.rule(when=rawio.input.changed)
+def wait_for_a_thread(ctx):
+    pass
+
+rs.run(parrot, conio)
+"""
+
 terminals = pytest.mark.skipif(os.name != "posix", reason="needs pseudo-terminals")
 
 
-def talk(folder: Path, *, redirected: bool) -> tuple[bytes, str]:
+def talk(folder: Path, *, redirected: bool, agent: str = AGENT) -> tuple[bytes, str]:
     """Type two lines on a terminal. Return the text on the terminal, and the text on the redirected standard error."""
     ours, theirs = os.openpty()
     run = subprocess.Popen(
-        [sys.executable, "-c", AGENT],
+        [sys.executable, "-c", agent],
         stdin=theirs,
         stdout=theirs,
         stderr=subprocess.PIPE if redirected else theirs,
@@ -91,6 +130,17 @@ def test_log_lines_go_to_a_file_and_not_to_the_terminal(tmp_path: Path) -> None:
     assert file.stat().st_mode & 0o777 == 0o600
     assert b"careful" not in seen
     assert seen.decode().rstrip().endswith(f"The log of this chat has 2 warnings: {file}")
+
+
+@terminals
+def test_warnings_about_slow_rules_go_to_the_log_and_not_to_the_terminal(tmp_path: Path) -> None:
+    seen, _ = talk(tmp_path, redirected=False, agent=SLOW_AGENT)
+    (file,) = tmp_path.rglob("log")
+    text = file.read_text()
+    assert "rule parrot:repeat (<string>:22) blocked the loop" in text
+    assert "plain functions wait for a worker thread: parrot:wait_for_a_thread" in text
+    assert b"blocked" not in seen
+    assert b"worker" not in seen
 
 
 @terminals

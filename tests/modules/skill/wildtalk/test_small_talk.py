@@ -11,11 +11,11 @@ import ravestate as rs
 from ravestate.language.chat import Message, Progress
 from ravestate.language.matcher import bundled_matcher
 from ravestate.modules import interloc, rawio, wildtalk
-from ravestate.modules.skill.wildtalk import rules
+from ravestate.modules.skill.wildtalk import rules, small_talk
 from ravestate.modules.skill.wildtalk.listening import Listener, ListeningBackend, State
 from ravestate.modules.skill.wildtalk.listening.state import Game
 from ravestate.modules.skill.wildtalk.names import overheard
-from ravestate.modules.skill.wildtalk.small_talk import learn_all
+from ravestate.modules.skill.wildtalk.small_talk import learn_all, listener
 from ravestate.testing import Simulation, simulate
 
 other = rs.Module("other", requires=[rawio, interloc])
@@ -96,7 +96,25 @@ def test_slow_checks_do_not_block_the_event_loop(sim: Simulation, monkeypatch: p
     assert not any(blocks for _, blocks in checked)
 
 
-def test_each_utterance_gets_one_answer_although_two_clauses_wait_for_it(sim: Simulation) -> None:
+def test_before_the_examples_are_learnt_nothing_looks_at_them_on_the_event_loop(
+    sim: Simulation, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    loop = threading.current_thread()
+    callers: list[threading.Thread] = []
+
+    def noted() -> Listener:
+        callers.append(threading.current_thread())
+        return listener()
+
+    monkeypatch.setattr(small_talk, "learnt", threading.Event())
+    monkeypatch.setattr(small_talk, "listener", noted)
+    sim.say("my dog has died")
+    assert callers
+    assert loop not in callers
+    assert sim.fired[-1] == "wildtalk:comfort"
+
+
+def test_it_answers_once_although_two_clauses_wait_for_the_input(sim: Simulation) -> None:
     for text in ("hello", "hello", "I bought a hat"):
         sim.say(text)
         sim.advance(1.0)

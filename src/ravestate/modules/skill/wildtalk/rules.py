@@ -32,8 +32,7 @@ from .small_talk import (
     learn_all,
     listen,
     listener,
-    may_be_known,
-    may_claim,
+    may_suit,
     needs_comfort,
     notes_for,
     traces,
@@ -258,9 +257,7 @@ async def go_on(ctx: rs.RuleContext) -> rs.Resign | None:
 
 
 @module.rule(
-    when=nlp.analysis.changed.where(may_be_known)
-    | nlp.analysis.changed.where(needs_comfort)
-    | nlp.analysis.changed.where(may_claim),
+    when=nlp.analysis.changed.where(may_suit),
     reads=(model, interloc.users, overheard, history),
     writes=(rawio.output, listening),
     weight=4.0,  # this rule outranks modules that only note a fact in the same words: "I am Ann, my dog has died"

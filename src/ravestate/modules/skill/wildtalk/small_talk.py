@@ -53,6 +53,10 @@ def _listener() -> Listener:
     return Listener()
 
 
+learnt = threading.Event()
+"""Set as soon as all examples of small talk are learnt."""
+
+
 def learn_all() -> None:
     """Learn all examples of small talk.
 
@@ -62,12 +66,24 @@ def learn_all() -> None:
     listener().load()
     facts_matcher().load()
     persona_matcher().load()
+    learnt.set()
 
 
 def heard_in(ctx: rs.RuleContext, text: str, seen: nlp.Analysis | None) -> Heard:
     """Return the utterance in the form that the listening skill takes."""
     users = [item for item in ctx[interloc.users].values() if isinstance(item, str)]
     return Heard(text, seen, users[0] if len(users) == 1 else "")
+
+
+def may_suit(seen: nlp.Analysis | None) -> bool:
+    """Return whether `comfort` may have an answer to the utterance; the rule looks closer, in a thread.
+
+    This is a predicate, so it runs on the event loop, and must not wait. Until the examples are learnt, a look at them
+    would take up to seconds. So until then, every utterance may suit.
+    """
+    if seen is None or not learnt.is_set():
+        return seen is not None
+    return may_be_known(seen) or needs_comfort(seen) or may_claim(seen)
 
 
 def needs_comfort(seen: nlp.Analysis | None) -> bool:
