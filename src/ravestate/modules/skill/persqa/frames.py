@@ -98,6 +98,6 @@ def _clause(reader: Reader, said: nlp.Statement) -> str:
     parts = [child for child in tree.children(top) if child.dep not in _ASIDE]
     text = spelled_out(tree.phrase([top, *(word for part in parts for word in tree.subtree(part))]))
     if said.when:
-        text = text.replace(said.when, "").strip()
+        text = text.replace(said.when, "for years" if re.match("for|since|over", said.when.lower()) else "").strip()
     text = re.sub(r"^we\b", "I", re.sub(r"\bour\b", "my", text), flags=re.IGNORECASE)
     return f"I {text}" if said.subject.person == "I" and not re.search(r"\bi\b", text, re.IGNORECASE) else text

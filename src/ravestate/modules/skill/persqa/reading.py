@@ -258,7 +258,10 @@ class Reader:
             yield Link(topic, object if object.names else None)
         told = list(self._by_table(said, has=has))
         hobby = pursuit_in(self, said) if all(link.topic == "liking" or not link.sure for link in told) else None
-        yield from [hobby] if hobby else [*(being_in(self, said) if predicate == "be" else ()), *told]
+        told = [*(being_in(self, said) if predicate == "be" else ()), *told]
+        yield from [hobby] if hobby else told
+        if not hobby and {"subject"} == {link.topic for link in told if self.values(link)}:  # "I do law at Leiden"
+            yield from (Link("university", phrase) for phrase in said.phrases if phrase.preposition in ("at", "from"))
 
     def _dislikes(self, said: nlp.Statement) -> bool:
         """Return whether the user dislikes something: *I hate rain*, *I can't stand rain*."""
@@ -293,7 +296,9 @@ class Reader:
                 found = ("club", False) if phrase.head in TOPICS["club"].nouns else None  # "I row for the club"
             if phrase.text and found and self._word_before(phrase) not in WORDS["returning"]:
                 topic = "childhood" if child and found[0] == "home" else found[0]
-                yield Link(topic, phrase, found[1])
+                place = next(iter(said.phrases[said.phrases.index(phrase) + 1 :] if phrase in said.phrases else ()), phrase)
+                inside = TOPICS[topic].kind == "place" and not phrase.names and place.preposition == "in" and place.names
+                yield Link(topic, place if inside else phrase, found[1])  # "a hospital in Pune"
                 if (
                     topic == "childhood"
                     and self.words & {"born"}
