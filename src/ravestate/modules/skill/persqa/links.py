@@ -55,6 +55,8 @@ def pursuit_in(reader: Reader, said: nlp.Statement) -> Link | None:
     verb = reader.verb(said)
     if said.subject.text.lower() not in ("i", "we") or not isinstance(said.triple.object, str):
         return None
+    if verb is None and (object.preposition or not object.text):
+        return None
     if verb is None:  # the parser has taken the verb for a noun: "I crochet"
         written = gerund(f"to {object.text}", reader.seen)
         return Link("hobby", object, value=written) if said.holds and likeness(written, "activity") > 0.4 else None

@@ -13,6 +13,7 @@ from ravestate.modules.meta.nlp.tree import Word
 
 from .being import being_in, beside_name
 from .changes import denied_by, ended_by, is_partial, renamed_in, switched_in
+from .fragments import fragments_in
 from .frames import framed_in
 from .links import Link, predicate_of, pursuit_in, trade_in
 from .relatives import is_former, named_in, owner_before
@@ -61,7 +62,7 @@ class Reader:
         told: dict[str, tuple[str, ...]] = {}
         gone: dict[str, tuple[str, ...]] = {}
         denied = ""  # the topic of the last denial: "my name isn't Ada, it's Ida"
-        for said in filter(self._asserted, self.seen.statements):
+        for said in filter(self._asserted, (*self.seen.statements, *fragments_in(self))):
             if ended := ended_by(self, said):
                 gone |= {topic: gone.get(topic, ()) + values for topic, values in ended.items()}
                 continue
