@@ -22,7 +22,9 @@ _OBJECTIVE = word_set("me him us them")
 _RELATIVE = word_set("that which who whom")
 _MOVING = word_set("go come drive walk run ride cycle travel get bike commute hurry")
 _POSSESSIVE = word_set("my our his her their your")
-_OWN_ACTIONS = word_set("study work play love like run teach paint drive cook bake dance sing coach train design fish hate need want help")
+_OWN_ACTIONS = word_set(
+    "study work play love like run teach paint drive cook bake dance sing coach train design fish hate need want help"
+)
 """Verbs of the first person that the parser takes for nouns after *and*."""
 _INVERTING = word_set("do does did can could will would should")
 

@@ -27,7 +27,9 @@ def fragments_in(reader: Reader) -> Iterator[nlp.Statement]:
     """Yield a statement for each part of a sentence that has neither a subject nor a finite verb."""
     for sentence in _split(reader.tree.words, _ENDS):
         subjects = {word.low for word in sentence if word.dep in SUBJECTS}
-        finite = any(word.tag in ("VBD", "VBP", "VBZ", "MD") and word.lemma not in ("be", "'s", "'m") for word in sentence)
+        finite = any(
+            word.tag in ("VBD", "VBP", "VBZ", "MD") and word.lemma not in ("be", "'s", "'m") for word in sentence
+        )
         pieces = list(_split(sentence, _JOINTS))
         for piece in pieces if subjects <= _OWN and len(pieces) > 1 else ():
             low = [word.low for word in piece]

@@ -88,7 +88,9 @@ def pursuit_in(reader: Reader, said: nlp.Statement) -> Link | None:
         habit = habit and not NOW & set(said.when.split()) and (direct or not (object.text or phrases))
         fleeting = said.verb in WORDS["states"] | WORDS["passing"]
         asked = reader.asked == "hobby" and "i" in reader.words and said.holds and direct and not fleeting
-        wanted = asked or (habit and likeness(gerund(written, reader.seen), "activity") > (0.2 if direct or often else 0.4))
+        wanted = asked or (
+            habit and likeness(gerund(written, reader.seen), "activity") > (0.2 if direct or often else 0.4)
+        )
     return Link("hobby", object if object.text else said.subject, value=written) if wanted and written else None
 
 

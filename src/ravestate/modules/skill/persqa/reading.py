@@ -297,8 +297,12 @@ class Reader:
                 found = ("club", False) if phrase.head in TOPICS["club"].nouns else None  # "I row for the club"
             if phrase.text and found and self._word_before(phrase) not in WORDS["returning"]:
                 topic = "childhood" if child and found[0] == "home" else found[0]
-                place = next(iter(said.phrases[said.phrases.index(phrase) + 1 :] if phrase in said.phrases else ()), phrase)
-                inside = TOPICS[topic].kind == "place" and not phrase.names and place.preposition == "in" and place.names
+                place = next(
+                    iter(said.phrases[said.phrases.index(phrase) + 1 :] if phrase in said.phrases else ()), phrase
+                )
+                inside = (
+                    TOPICS[topic].kind == "place" and not phrase.names and place.preposition == "in" and place.names
+                )
                 yield Link(topic, place if inside else phrase, found[1])  # "a hospital in Pune"
                 if (
                     topic == "childhood"

@@ -77,7 +77,9 @@ WORDS = {name: frozenset(words) for name, words in cast("dict[str, list[str]]", 
 NOUNS = {noun: topic.name for topic in _ROWS for noun in topic.nouns}
 SAYS = {phrase.rstrip("~"): (topic.name, not phrase.endswith("~")) for topic in _ROWS for phrase in topic.says}
 ENDS = {phrase: topic.name for topic in _ROWS for phrase in topic.ends}
-_NATIONS: dict[str, Any] = load_yaml((files(__name__.rpartition(".")[0]) / "nations.yaml").read_text(encoding="utf-8"), "nations.yaml")
+_NATIONS: dict[str, Any] = load_yaml(
+    (files(__name__.rpartition(".")[0]) / "nations.yaml").read_text(encoding="utf-8"), "nations.yaml"
+)
 NATIONS = {word: country for country, words in _NATIONS["nations"].items() for word in words}
 """A word for the people of a country → the country."""
 NATIONS_BESIDE = frozenset(_NATIONS["beside"])

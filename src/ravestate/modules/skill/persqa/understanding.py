@@ -257,10 +257,14 @@ class _Hearing:
         kind = topic if topic in kinds.FITTING else TOPICS[topic].kind
         fitting = kind in kinds.FITTING and all(likeness(value, kind) > 0.2 for value in values)
         clear = (not loose or fitting) and all(value_of(value, TOPICS[topic], seen, sure=False) for value in values)
-        if self.fresh and not any(word.pos in ("PROPN", "NUM") and word.text in " ".join(values) for word in seen.tree.words):
+        if self.fresh and not any(
+            word.pos in ("PROPN", "NUM") and word.text in " ".join(values) for word in seen.tree.words
+        ):
             chosen = picked(topic, seen)
             facts, clear = (chosen, True) if chosen else (facts, clear)
-        polite = {act for act in ("thanks", "greeting", "acknowledgement") if act in seen.acts and not self.is_unsure(act)}
+        polite = {
+            act for act in ("thanks", "greeting", "acknowledgement") if act in seen.acts and not self.is_unsure(act)
+        }
         if facts and may_stand_alone(seen, clear=clear) and not polite:
             return Meaning("told", tuple(facts), topic)
         if not self.fresh or not yesno:
