@@ -40,7 +40,7 @@ def fragments_in(reader: Reader) -> Iterator[nlp.Statement]:
                 yield from (_being(reader, word) for word in origin if not finite)
             if rest and rest[0].low in ("in", "near") and _NOW & set(low):
                 yield from (_being(reader, word, " now") for word in rest[:1])
-            years = low[1:3] == ["years", "old"]
+            years = low[1:3] == ["years", "old"] and bool(subjects)
             if piece[0].pos == "NUM" and (years or (len(piece) == 1 and not subjects and introduced_in(reader))):
                 yield _statement(Phrase(piece[0].text))
 

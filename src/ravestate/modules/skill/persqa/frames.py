@@ -59,8 +59,9 @@ def framed_in(reader: Reader, said: nlp.Statement) -> Link | None:
             fits = (
                 fits and (match.name == "liking" or not said.negated) and not (said.past and match.name not in LASTING)
             )
-            if fits and match.score > max(SURE, best[0] if best else 0.0):
-                best = match.score, Link(match.name, phrase, sure=False)
+            link = Link(match.name, phrase, sure=False)
+            if fits and match.score > max(SURE, best[0] if best else 0.0) and reader.values(link):
+                best = match.score, link
     return best[1] if best else None
 
 
