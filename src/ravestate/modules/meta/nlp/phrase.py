@@ -61,7 +61,8 @@ def phrase_of(tree: Tree, head: Word, words: list[Word] | None = None) -> Phrase
     """Return the phrase that `words` form around `head`. By default, `words` is the noun phrase of `head`."""
     noun = None if head.pos in ("PRON", "DET") else head
     if head.pos == "PROPN":  # as in "my friend Anna": the head is "friend"
-        noun = next((word for word in tree.children(head, "compound", "nmod") if word.pos == "NOUN"), None)
+        beside = tree.children(head, "compound", "nmod")
+        noun = next((word for word in beside if word.pos == "NOUN" or _is_common(tree, word, head)), None)
     of = [word for word in tree.children(noun or head, "prep") if word.low == "of"]
     owned = [*tree.children(noun or head, "poss"), *tree.children_of(of, "pobj"), *tree.children(head, "poss")]
     owner = next(iter(owned), None)
@@ -157,12 +158,18 @@ def _with_hyphens(tree: Tree, kept: list[Word]) -> list[Word]:
 def _names_in(tree: Tree, head: Word) -> list[str]:
     """Return the names in a phrase: its head, appositions, and *named Rosa*."""
     if head.pos == "PROPN":
-        name = tree.phrase([head, *(word for word in tree.children(head, "compound", "flat") if word.pos == "PROPN")])
+        parts = [word for word in tree.children(head, "compound", "flat") if word.pos == "PROPN"]
+        name = tree.phrase([head, *(word for word in parts if not _is_common(tree, word, head))])
         joined = tree.children(head, "conj") if head.dep == "appos" else []
         return [name, *(name for word in joined for name in _names_in(tree, word))]
     called = [word for word in tree.children(head, "acl", "relcl") if word.low in ("named", "called")]
     named = [*tree.children(head, "appos"), *tree.children_of(called, "oprd", "dobj", "attr")]
     return [name for word in named for name in _names_in(tree, word)] if head.pos == "NOUN" else []
+
+
+def _is_common(tree: Tree, word: Word, head: Word) -> bool:
+    """Return whether a word before a name is no part of the name: *nan*, in *my nan Pearl*."""
+    return word.text.islower() and head.text.istitle() and bool(tree.children(head, "poss"))
 
 
 def _amount(tree: Tree, head: Word) -> float | None:

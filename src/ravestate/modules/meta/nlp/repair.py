@@ -21,6 +21,11 @@ _THINGS = word_set("it that this me him her them us one")
 _OBJECTIVE = word_set("me him us them")
 _RELATIVE = word_set("that which who whom")
 _MOVING = word_set("go come drive walk run ride cycle travel get bike commute hurry")
+_POSSESSIVE = word_set("my our his her their your")
+_OWN_ACTIONS = word_set(
+    "study work play love like run teach paint drive cook bake dance sing coach train design fish hate need want help"
+)
+"""Verbs of the first person that the parser takes for nouns after *and*."""
 _INVERTING = word_set("do does did can could will would should")
 
 
@@ -35,6 +40,7 @@ def repaired(tree: Tree) -> Tree:
             _make_copula(tree, words, word)
         _name_relative(tree, words, word)
         _make_present(tree, words, word)
+        _make_joined(tree, words, word)
         _make_way(tree, words, word)
         _make_predicate(tree, words, word)
         if word.dep == "compound" and word.tag == "NNS" and tree.children(word, "poss"):  # as in "my brothers wife"
@@ -126,6 +132,7 @@ def _make_present(tree: Tree, words: list[Word], noun: Word) -> None:
     """Turn a plural noun at the end of a clause without a verb into a verb: *snores*, in *my husband snores*."""
     before = tree.before(noun)
     clausal = noun.dep == "ROOT" or (noun.dep in ("ccomp", "advcl") and tree.children(noun, "mark"))
+    clausal = clausal or (noun.dep == "conj" and tree.head(noun).pos == "VERB")
     if noun.tag != "NNS" or not clausal or before is None or before.tag not in ("NN", "NNP"):
         return
     if (
@@ -134,12 +141,31 @@ def _make_present(tree: Tree, words: list[Word], noun: Word) -> None:
         or tree.children(noun, "aux", "cop", "case")
     ):
         return
-    if before.dep == "compound" and noun.dep == "ROOT":  # as in "my football boots"
+    relative = tree.before(before) if before.tag == "NNP" else None  # as in "my flatmate Ola snores"
+    owner = tree.before(relative) if relative is not None and relative.pos == "NOUN" else None
+    named = relative is not None and owner is not None and owner.low in _POSSESSIVE
+    if before.dep == "compound" and noun.dep in ("ROOT", "conj") and not named:  # as in "my football boots"
         return
+    if named and relative is not None:
+        words[relative.index] = replace(relative, dep="compound", head=before.index)
     words[noun.index] = replace(words[noun.index], pos="VERB", tag="VBZ")
     words[before.index] = replace(words[before.index], dep="nsubj")
     for word in tree.children(noun, "det", "poss", "amod") if before.dep == "compound" else ():
         words[word.index] = replace(words[word.index], head=before.index)
+
+
+def _make_joined(tree: Tree, words: list[Word], noun: Word) -> None:
+    """Turn a noun after *and* into the verb: *study*, in *I am 23 and study law*."""
+    before, thing = tree.before(noun), tree.head(noun)
+    verb = tree.head(thing)
+    joined = noun.dep == "compound" and noun.low in _OWN_ACTIONS and before is not None and before.low in ("and", "but")
+    if not joined or thing.dep != "conj" or thing.index < noun.index:
+        return
+    while verb.dep in ("attr", "dobj", "acomp", "pobj", "prep", "conj") and verb.pos not in ("VERB", "AUX"):
+        verb = tree.head(verb)
+    if any(word.low in ("i", "we") for word in tree.children(verb, "nsubj", "nsubjpass")):
+        words[noun.index] = replace(noun, pos="VERB", tag="VBP", dep="conj", head=verb.index)
+        words[thing.index] = replace(thing, dep="dobj", head=noun.index)
 
 
 def _make_predicate(tree: Tree, words: list[Word], adjective: Word) -> None:
@@ -196,6 +222,11 @@ def _split_relatives(tree: Tree) -> list[Word]:
 def _name_relative(tree: Tree, words: list[Word], noun: Word) -> None:
     """Join a noun to the name after it: *my mum*, in *my mum Ann sings*."""
     name = tree.after(noun)
+    own = noun.pos == "NOUN" and any(word.low in _POSSESSIVE for word in tree.children(noun, "poss"))
+    if own and name and name.text.istitle() and name.dep in ("nsubj", "advmod", "npadvmod") and noun.dep == "nsubj":
+        if name.head == noun.head and name.head > name.index:  # as in "my mate Olly plays chess"
+            words[name.index] = replace(name, pos="PROPN", tag="NNP", dep="appos", head=noun.index)
+        return
     if noun.pos != "NOUN" or name is None or name.pos != "PROPN" or name.dep != "nsubj" or noun.head == name.index:
         return
     if tree.children(noun, "poss") and noun.dep != "nsubj" and name not in tree.children(noun):

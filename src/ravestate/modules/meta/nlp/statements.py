@@ -237,7 +237,10 @@ class _Assertion:
                 continue
             above = list(self._tree.ancestors(word))
             inside = above[: next((n for n, verb in enumerate(above) if verb in self._clause.verbs), len(above))]
-            if word.dep in ("pobj", "oprd") and not any(other.dep in SUBJECTS or other.low == "of" for other in inside):
+            given = word.dep == "dobj" and word.pos == "PROPN" and self._clause.lemma in ("name", "call", "christen")
+            if (word.dep in ("pobj", "oprd") or given) and not any(
+                other.dep in SUBJECTS or other.low == "of" for other in inside
+            ):
                 yield phrase_of(self._tree, word)
 
     @cached_property

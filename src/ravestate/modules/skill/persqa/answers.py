@@ -32,7 +32,7 @@ _END = re.compile(rf"[.;:!?…\n()\"]|\s(?:{_any('closers')}|(?:and )?(?:what ab
 """The end of an answer."""
 _ONE = (re.compile(","), re.compile(r",| and\b"))
 _HEDGES = re.compile(
-    r"^(?:(?:a bit of|a little|some|lots of|also|sometimes|mostly|maybe|just|both|to) )+", re.IGNORECASE
+    r"^(?:(?:a bit of|a little|some|lots of|also|sometimes|mostly|maybe|just|both|to|then) )+", re.IGNORECASE
 )
 _PIECE = re.compile(
     r"[.!?;…]+\s+|,?\s(?:and|but|so) (?=(?:i|my|we|our|you|yours)\b)|,\s(?=(?:i|my|we|our|you|it|he|she|they|why|what|how|where|who)\b)",
@@ -65,6 +65,9 @@ def answer(text: str, topic: str, seen: nlp.Analysis) -> list[Fact]:
     where = _WHERE.search(rest) if about.kind in _PLACED else None
     if where and about.kind in ("name", "people") and any(one.label in ("DATE", "TIME") for one in seen.entities):
         return []  # "exam on Monday"
+    tells = {word.low for word in seen.tree.words if word.tag == "VBD" and word.text.islower() and word.lemma != "be"}
+    if about.kind in ("name", "people") and tells & set(rest.lower().split()[:1]):
+        return []  # "just made coffee"
     found = tuple(_values(rest[: where.start()] if where else rest, about, seen))
     if where and about.kind == "work" and rest[: where.start()].endswith("ing"):
         return []  # "looking for work"
@@ -73,6 +76,20 @@ def answer(text: str, topic: str, seen: nlp.Analysis) -> list[Fact]:
     if facts and where and beside and (place := value_of(where[1], beside, seen)):
         facts.append(Fact(beside.name, (place,)))
     return facts
+
+
+def picked(topic: str, seen: nlp.Analysis) -> list[Fact]:
+    """Return the last number, or the only name, in a loose answer: *older than you think: 83*, *same as ever, Ulm*."""
+    about, words = TOPICS[topic], seen.tree.words
+    if about.kind == "number":
+        found = [word.text for word in words if word.pos == "NUM"][-1:]
+    else:
+        names = [word for word in words if word.pos == "PROPN"]
+        runs = [word for word in names if seen.tree.before(word) not in names]
+        only = about.kind in ("place", "organisation") and len(runs) == 1 and len(words) < 9
+        only = only and (about.kind == "place" or runs[0].dep != "pobj")
+        found = [" ".join(word.text for word in names)] if only else []
+    return [Fact(topic, (value,)) for text in found if (value := value_of(text, about, seen, sure=True))]
 
 
 def _values(rest: str, topic: Topic, seen: nlp.Analysis) -> list[str]:
@@ -144,13 +161,18 @@ def may_stand_alone(seen: nlp.Analysis, *, clear: bool = False) -> bool:
     if seen.yesno and not clear and (rest == text or not rest.strip()):
         return False  # "hard to say"
     said = {word.low for word in seen.tree.words}
-    return all(_may_answer(one) for one in seen.statements if one.subject.person != "I" or said & {"i", "we", "i'm"})
+    first = next((word.text for word in seen.tree.words), "")
+    named = clear and first.istitle() and likeness(first, "name") > 0.3  # the parser takes *Rosalind* for a verb
+    statements = [one for one in seen.statements if not (one.request and named)]
+    return all(_may_answer(one) for one in statements if one.subject.person != "I" or said & {"i", "we", "i'm"})
 
 
 def _may_answer(said: nlp.Statement) -> bool:
     if said.subject.person == "I":
         thinks = f"I {said.verb}" in WORDS["openers"]
         return thinks or (not said.plan and said.verb in ("be", *WORDS["likes"], *WORDS["pastimes"]))
+    if said.subject.person == "you":
+        return said.verb == "think"  # "older than you think: 83"
     pronouns = ("", "they", "these", "those", "he", "she")
     if said.subject.text.lower() in ("it", "that", "this"):
         return said.verb in ("be", "call", "name")  # not "it is raining"

@@ -9,8 +9,8 @@ from ravestate.modules import nlp
 from ravestate.modules.meta.nlp.phrase import Phrase
 
 from .kinds import likeness
-from .links import Link
-from .topics import NAME, SAYS, TOPICS, WORDS
+from .link import Link
+from .topics import NAME, NATIONS, NATIONS_BESIDE, SAYS, TOPICS, WORDS
 from .utterance import Utterance
 from .values import number_in
 
@@ -27,16 +27,23 @@ def being_in(reader: Utterance, said: nlp.Statement) -> Iterator[Link]:
         yield Link("age", object, value=number)
     elif object.owner is not None and (found := SAYS.get(f"be {object.head} of")):
         yield Link(found[0], object.owner)
+    elif (country := _country(text)) and not object.preposition:
+        yield Link("origin", object, value=country)
     elif _is_nationality(reader, object):
-        return  # the country is not named: "I'm Greek"
-    elif object.preposition in ("at", "with") and object.head in TOPICS["university"].nouns:
-        yield Link("university", object)
+        return  # the country is not named: "I'm Kurdish"
+    elif object.head in WORDS["terms"] and " of " in text:  # "I'm in my second year of law"
+        yield Link("subject", object, sure=False, value=text.partition(" of ")[2])
+    elif object.preposition in ("at", "in") and object.head in TOPICS["university"].nouns:
+        places = (phrase for phrase in said.phrases if phrase.preposition == "in" and phrase.names)
+        yield Link("university", object if object.names or object.owner else next(places, object))
     elif object.preposition in ("at", "with") and (reader.known.get("employer") or reader.asked == "employer"):
         yield Link("employer", object, sure=False)
+    elif found := re.fullmatch(rf"(?:\w+ )?(?:{'|'.join(WORDS['keen'])}) (\w+?)e?r", text.lower()):
+        yield Link("hobby", object, value=f"{found[1]}ing")  # "I'm a keen gardener"
     elif object.head == "student":
         yield Link("occupation", object, value="student")
         yield Link("subject", object.owner or object, sure=False, value="" if object.owner else text.rpartition(" ")[0])
-        yield from (Link("university", phrase) for phrase in said.phrases if phrase.preposition in ("at", "from"))
+        yield from (Link("origin", phrase) for phrase in said.phrases if phrase.preposition == "from")
     elif not object.preposition and ((object.names and not object.head) or _is_capital(reader, object)):
         yield Link(NAME, object, sure=reader.asked == NAME or _is_capital(reader, object))
         yield from beside_name(reader, said)
@@ -52,6 +59,12 @@ def being_in(reader: Utterance, said: nlp.Statement) -> Iterator[Link]:
             yield Link("occupation", object, value=text.partition(" of ")[0])  # "I'm the head cook of a school"
         places = (phrase for phrase in said.phrases if phrase.preposition in ("at", "for", "with"))
         yield from (Link("employer", phrase, sure=False) for phrase in places)
+
+
+def _country(text: str) -> str:
+    """Return the country in the name of its people; empty if there is none: *Denmark*, for *Danish*."""
+    words = " ".join(word for word in re.split(r"[\s-]", text.lower()) if word not in NATIONS_BESIDE)
+    return NATIONS.get(words) or NATIONS.get(words.removesuffix("s"), "")
 
 
 def _is_nationality(reader: Utterance, phrase: Phrase) -> bool:

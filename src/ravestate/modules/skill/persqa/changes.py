@@ -15,7 +15,8 @@ from difflib import SequenceMatcher
 from ravestate.modules import nlp
 from ravestate.modules.meta.nlp.phrase import Phrase
 
-from .links import NOW, Link, predicate_of
+from .link import Link
+from .links import NOW, predicate_of
 from .topics import ENDS, NOUNS, TOPICS, WORDS, Fact
 from .utterance import Utterance
 from .values import gerund, number_in, value_of

@@ -15,7 +15,8 @@ from ravestate.modules.meta.nlp.phrase import Phrase
 
 from .answers import spelled_out
 from .kinds import frames, kind_of
-from .links import NOW, Link
+from .link import Link
+from .links import NOW
 from .topics import LASTING, NAME, WORDS
 from .utterance import Utterance, is_former
 
@@ -55,8 +56,9 @@ def framed_in(reader: Utterance, said: nlp.Statement) -> Link | None:
             fits = (
                 fits and (match.name == "liking" or not said.negated) and not (said.past and match.name not in LASTING)
             )
-            if fits and match.score > max(SURE, best[0] if best else 0.0):
-                best = match.score, Link(match.name, phrase, sure=False)
+            link = Link(match.name, phrase, sure=False)
+            if fits and match.score > max(SURE, best[0] if best else 0.0) and reader.values(link):
+                best = match.score, link
     return best[1] if best else None
 
 
@@ -94,6 +96,6 @@ def _clause(reader: Utterance, said: nlp.Statement) -> str:
     parts = [child for child in tree.children(top) if child.dep not in _ASIDE]
     text = spelled_out(tree.phrase([top, *(word for part in parts for word in tree.subtree(part))]))
     if said.when:
-        text = text.replace(said.when, "").strip()
+        text = text.replace(said.when, "for years" if re.match("for|since|over", said.when.lower()) else "").strip()
     text = re.sub(r"^we\b", "I", re.sub(r"\bour\b", "my", text), flags=re.IGNORECASE)
     return f"I {text}" if said.subject.person == "I" and not re.search(r"\bi\b", text, re.IGNORECASE) else text

@@ -3,12 +3,13 @@
 from __future__ import annotations
 
 import re
-from dataclasses import dataclass
+from dataclasses import replace
 
 from ravestate.modules import nlp
 from ravestate.modules.meta.nlp.phrase import Phrase, gerund_phrase
 
 from .kinds import likeness
+from .link import Link
 from .topics import WORDS
 from .utterance import Utterance
 from .values import gerund
@@ -16,18 +17,6 @@ from .values import gerund
 _LEISURE = re.compile(r"\b(?:free|spare|leisure) time\b|\bfor fun\b|\bas a hobby\b", re.IGNORECASE)
 NOW = frozenset(["tonight", "today", "tomorrow", "now", "this"])
 """Words for a time that makes a statement momentary."""
-
-
-@dataclass(frozen=True, slots=True)
-class Link:
-    """A topic in a statement, and the phrase with its value. The phrase is None if the statement gives no value."""
-
-    topic: str
-    phrase: Phrase | None = None
-    sure: bool = True
-    """Whether the words before the value can only introduce this topic: *my name is*."""
-    value: str = ""
-    """The value, if it differs from the phrase."""
 
 
 def predicate_of(said: nlp.Statement) -> str:
@@ -50,8 +39,17 @@ def pursuit_in(reader: Utterance, said: nlp.Statement) -> Link | None:
         return Link("hobby", said.object, value=written[0]) if written else None
     verbs, object = said.triple.predicate.removeprefix("not ").split(), said.object
     verb = reader.verb(said)
-    if verb is None or said.subject.text.lower() != "i" or not isinstance(said.triple.object, str):
+    if said.subject.text.lower() not in ("i", "we") or not isinstance(said.triple.object, str):
         return None
+    if verb is None and (object.preposition or not object.text):
+        return None
+    if verb is None:  # the parser has taken the verb for a noun: "I crochet"
+        written = gerund(f"to {object.text}", reader.seen)
+        return Link("hobby", object, value=written) if said.holds and likeness(written, "activity") > 0.4 else None
+    often = object.preposition in ("in", "on", "at", "after", "every") and object.head in WORDS["leisure"]
+    object = Phrase("") if often else replace(object, text=re.sub(r"^lots? of ", "", object.text))
+    often = often or bool(reader.words & {"usually", "often", "mostly", "regularly", "weekends", "sometimes"})
+    phrases = [phrase for phrase in said.phrases if phrase.head not in WORDS["leisure"]]
     chained, direct = len(verbs) > 1, object.text and not object.preposition
     free = object.head in ("time", "weekend", "fun")
     written = reader.span_of(verb.low, Phrase("") if free else object)
@@ -73,10 +71,12 @@ def pursuit_in(reader: Utterance, said: nlp.Statement) -> Link | None:
     else:
         habit = verbs[0] != "be" and said.holds and verb.tag in ("VBP", "VB") and not chained and not free
         habit = habit and "to" not in {word.low for word in reader.tree.children(verb, "aux")}  # "to make tea"
-        habit = habit and not NOW & set(said.when.split()) and (direct or not (object.text or said.phrases))
+        habit = habit and not NOW & set(said.when.split()) and (direct or not (object.text or phrases))
         fleeting = said.verb in WORDS["states"] | WORDS["passing"]
         asked = reader.asked == "hobby" and "i" in reader.words and said.holds and direct and not fleeting
-        wanted = asked or (habit and likeness(gerund(written, reader.seen), "activity") > (0.2 if direct else 0.4))
+        wanted = asked or (
+            habit and likeness(gerund(written, reader.seen), "activity") > (0.2 if direct or often else 0.4)
+        )
     return Link("hobby", object if object.text else said.subject, value=written) if wanted and written else None
 
 

@@ -13,8 +13,10 @@ from ravestate.modules.meta.nlp.tree import Word
 
 from .being import being_in, beside_name
 from .changes import denied_by, ended_by, is_partial, renamed_in, switched_in
+from .fragments import fragments_in
 from .frames import framed_in
-from .links import Link, predicate_of, pursuit_in, trade_in
+from .link import Link
+from .links import predicate_of, pursuit_in, trade_in
 from .relatives import named_in
 from .topics import ASKS, LASTING, NAME, NOUNS, SAYS, TOPICS, WORDS, Fact, favourite
 from .utterance import MINE, Utterance
@@ -35,7 +37,7 @@ class Reader(Utterance):
         told: dict[str, tuple[str, ...]] = {}
         gone: dict[str, tuple[str, ...]] = {}
         denied = ""  # the topic of the last denial: "my name isn't Ada, it's Ida"
-        for said in filter(self._asserted, self.seen.statements):
+        for said in filter(self._asserted, (*self.seen.statements, *fragments_in(self))):
             if ended := ended_by(self, said):
                 gone |= {topic: gone.get(topic, ()) + values for topic, values in ended.items()}
                 continue
@@ -197,7 +199,10 @@ class Reader(Utterance):
             yield Link(topic, object if object.names else None)
         told = list(self._by_table(said, has=has))
         hobby = pursuit_in(self, said) if all(link.topic == "liking" or not link.sure for link in told) else None
-        yield from [hobby] if hobby else [*(being_in(self, said) if predicate == "be" else ()), *told]
+        told = [*(being_in(self, said) if predicate == "be" else ()), *told]
+        yield from [hobby] if hobby else told
+        if not hobby and {"subject"} == {link.topic for link in told if self.values(link)}:  # "I do law at Leiden"
+            yield from (Link("university", phrase) for phrase in said.phrases if phrase.preposition in ("at", "from"))
 
     def _dislikes(self, said: nlp.Statement) -> bool:
         """Return whether the user dislikes something: *I hate rain*, *I can't stand rain*."""
@@ -232,24 +237,19 @@ class Reader(Utterance):
                 found = ("club", False) if phrase.head in TOPICS["club"].nouns else None  # "I row for the club"
             if phrase.text and found and self._word_before(phrase) not in WORDS["returning"]:
                 topic = "childhood" if child and found[0] == "home" else found[0]
-                yield Link(topic, phrase, found[1])
+                place = next(
+                    iter(said.phrases[said.phrases.index(phrase) + 1 :] if phrase in said.phrases else ()), phrase
+                )
+                inside = (
+                    TOPICS[topic].kind == "place" and not phrase.names and place.preposition == "in" and place.names
+                )
+                yield Link(topic, place if inside else phrase, found[1])  # "a hospital in Pune"
                 if (
                     topic == "childhood"
                     and self.words & {"born"}
                     and not any(one.verb in ("bear", "born") and one.object != object for one in self.seen.statements)
                 ):
                     yield Link("birthplace", phrase)  # "I was born and raised in Dresden"
-
-    def values(self, link: Link, *, denied: bool = False) -> tuple[str, ...]:
-        """Return the values of a link's topic in the link's phrase."""
-        topic, phrase = TOPICS[link.topic], link.phrase
-        if phrase is None:
-            return ()
-        if topic.kind in ("people", "name") and phrase.head == "name" and phrase.owner:
-            phrase = phrase.owner  # "by the name of Blackbeard"
-        named = topic.kind == "people" or (topic.kind in ("place", "organisation") and phrase.head)
-        raw = (phrase.names if named else ()) or (link.value or self.written(phrase),)  # "a small island, Naxos"
-        return self.fitting(link.topic, raw, sure=(link.sure and not denied) or link.topic == self.asked == NAME)
 
     def _word_before(self, phrase: Phrase) -> str:
         """Return the word before a phrase and its preposition: a verb that the parser may have mistaken for a noun."""

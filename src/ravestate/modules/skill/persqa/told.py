@@ -270,7 +270,8 @@ def _happened(reader: Reader, said: nlp.Statement) -> bool:
     """Return whether a statement reports a past event: *I painted a dragon*, but not *I lived in Rome*."""
     verb = reader.verb(said)
     flags = said.negated or said.hearsay or said.conditional or said.plan or said.question or said.request
-    if flags or verb is None or said.verb in WORDS["states"] | WORDS["pastimes"]:
+    event = said.verb == "have" and said.object.head in WORDS["happenings"]  # "she had a baby"
+    if flags or verb is None or (said.verb in WORDS["states"] | WORDS["pastimes"] and not event):
         return False
     return verb.tag == "VBD" or (
         verb.tag == "VBN" and any(aux.lemma == "have" for aux in reader.tree.children(verb, "aux"))

@@ -80,6 +80,12 @@ NOUNS = {noun: topic.name for topic in _ROWS for noun in topic.nouns}
 SAYS = {phrase.rstrip("~"): (topic.name, not phrase.endswith("~")) for topic in _ROWS for phrase in topic.says}
 """Words before a value → the topic, and whether any value fits (or only a value of the topic's kind)."""
 ENDS = {phrase: topic.name for topic in _ROWS for phrase in topic.ends}
+_NATIONS: dict[str, Any] = load_yaml(
+    (files(__name__.rpartition(".")[0]) / "nations.yaml").read_text(encoding="utf-8"), "nations.yaml"
+)
+NATIONS = {word: country for country, words in _NATIONS["nations"].items() for word in words}
+"""A word for the people of a country → the country."""
+NATIONS_BESIDE = frozenset(_NATIONS["beside"])
 ASKS = {phrase: topic.name for topic in _ROWS for phrase in topic.asks}
 
 

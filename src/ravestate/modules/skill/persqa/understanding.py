@@ -13,7 +13,7 @@ from ravestate.language.normal import plain
 from ravestate.modules import nlp
 
 from . import kinds
-from .answers import answer, may_stand_alone, opening, self_asked, spelled_out, without_opening
+from .answers import answer, may_stand_alone, opening, picked, self_asked, spelled_out, without_opening
 from .contrast import Correction, corrected_in, denied_in
 from .kinds import likeness
 from .reading import Reader
@@ -116,7 +116,8 @@ class _Hearing:
         self.acts = {match.name for match in kinds.acts().match_all(seen.sentences) if match is not None}
         self.text = spelled_out(seen.tree.text)
         self.sum = any(map(str.isdigit, self.text))  # "no time, 12 x 3" wants a sum, which another module answers
-        self.leave = "farewell" in seen.acts
+        self.named = self.waits and TOPICS[self.topic].kind in ("name", "people") and likeness(seen.text, NAME) > 0.1
+        self.leave = "farewell" in seen.acts and not self.is_unsure("farewell")
         self.sorry = bool(SORROWS & set(seen.feelings))
         self.moved = bool(set(seen.feelings) - _CALM or {"joke", "praise", "play"} & set(seen.acts))
 
@@ -184,6 +185,10 @@ class _Hearing:
             return Meaning("told", tuple(facts), topic, self.leave, aloud=aloud and not aside, free=free)
         return self.otherwise(aside)
 
+    def is_unsure(self, act: str) -> bool:
+        """Return whether an act is rather the answer to a question for a name: *Rocky*."""
+        return self.named and self.seen.acts[act].score < 0.9
+
     def otherwise(self, aside: bool) -> Meaning:
         """Return the meaning of an utterance that states no fact; `aside` says whether it asks, or says goodbye."""
         seen, topic, asks = self.seen, self.topic, self.seen.question is not None
@@ -249,15 +254,20 @@ class _Hearing:
         facts = (not felt and not empty and answer(self.text, topic, seen)) or (
             yesno.no and answer(without_opening(self.text), topic, seen)
         )  # "no, from Bremen"
-        loose = TOPICS[topic].kind == "activity" or {word.pos for word in seen.tree.words} & {"ADV", "PART"}
         values = [value for fact in facts or () for value in fact.values]
-        activity = TOPICS[topic].kind == "activity" and all(likeness(value, "activity") > 0.2 for value in values)
-        clear = (not loose or activity) and all(value_of(value, TOPICS[topic], seen, sure=False) for value in values)
-        if (
-            facts
-            and may_stand_alone(seen, clear=clear)
-            and not {"thanks", "greeting", "acknowledgement"} & set(seen.acts)
+        loose = TOPICS[topic].kind == "activity" or {word.pos for word in seen.tree.words} & {"ADV", "PART"}
+        kind = topic if topic in kinds.FITTING else TOPICS[topic].kind
+        fitting = kind in kinds.FITTING and all(likeness(value, kind) > 0.2 for value in values)
+        clear = (not loose or fitting) and all(value_of(value, TOPICS[topic], seen, sure=False) for value in values)
+        if self.fresh and not any(
+            word.pos in ("PROPN", "NUM") and word.text in " ".join(values) for word in seen.tree.words
         ):
+            chosen = picked(topic, seen)
+            facts, clear = (chosen, True) if chosen else (facts, clear)
+        polite = {
+            act for act in ("thanks", "greeting", "acknowledgement") if act in seen.acts and not self.is_unsure(act)
+        }
+        if facts and may_stand_alone(seen, clear=clear) and not polite:
             return Meaning("told", tuple(facts), topic)
         if not self.fresh or not yesno:
             return None

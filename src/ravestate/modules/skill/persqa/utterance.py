@@ -9,6 +9,7 @@ from ravestate.modules import nlp
 from ravestate.modules.meta.nlp.phrase import Phrase
 from ravestate.modules.meta.nlp.tree import Tree, Word
 
+from .link import Link
 from .topics import NAME, NOUNS, TOPICS, WORDS, favourite
 from .values import value_of
 from .wording import Facts
@@ -89,6 +90,17 @@ class Utterance:
         """Return the topic of a relative, a friend or a pet; empty for other nouns."""
         topic = NOUNS.get(noun, "")
         return topic if topic and TOPICS[topic].kind == "people" else ""
+
+    def values(self, link: Link, *, denied: bool = False) -> tuple[str, ...]:
+        """Return the values of a link's topic in the link's phrase."""
+        topic, phrase = TOPICS[link.topic], link.phrase
+        if phrase is None:
+            return ()
+        if topic.kind in ("people", "name") and phrase.head == "name" and phrase.owner:
+            phrase = phrase.owner  # "by the name of Blackbeard"
+        named = topic.kind == "people" or (topic.kind in ("place", "organisation") and phrase.head)
+        raw = (phrase.names if named else ()) or (link.value or self.written(phrase),)  # "a small island, Naxos"
+        return self.fitting(link.topic, raw, sure=(link.sure and not denied) or link.topic == self.asked == NAME)
 
     def fitting(self, topic: str, raw: Iterable[str], *, sure: bool = True) -> tuple[str, ...]:
         """Return the texts that can be values of a topic, in memory's spelling."""
