@@ -13,6 +13,7 @@ from ravestate.language.matcher import bundled_matcher
 from ravestate.modules import interloc, rawio, wildtalk
 from ravestate.modules.skill.wildtalk import rules, small_talk
 from ravestate.modules.skill.wildtalk.listening import Listener, ListeningBackend, State
+from ravestate.modules.skill.wildtalk.listening.bank import Bank
 from ravestate.modules.skill.wildtalk.listening.state import Game
 from ravestate.modules.skill.wildtalk.names import overheard
 from ravestate.modules.skill.wildtalk.small_talk import learn_all, listener
@@ -80,9 +81,9 @@ def test_slow_checks_do_not_block_the_event_loop(sim: Simulation, monkeypatch: p
     checked: list[tuple[str, bool]] = []
 
     def noted(name: str, check: Callable[..., Any]) -> Callable[..., Any]:
-        def run(*given: Any) -> Any:
+        def run(*given: Any, **options: Any) -> Any:
             checked.append((name, threading.current_thread() is loop))
-            return check(*given)
+            return check(*given, **options)
 
         return run
 
@@ -90,9 +91,10 @@ def test_slow_checks_do_not_block_the_event_loop(sim: Simulation, monkeypatch: p
     monkeypatch.setattr(rules, "claims", noted("claims", rules.claims))
     monkeypatch.setattr(rules, "needs_comfort", noted("needs_comfort", rules.needs_comfort))
     monkeypatch.setattr(Listener, "continues", noted("continues", Listener.continues))
-    for text in ("my dog has died", "yes", "tell me a joke"):
+    monkeypatch.setattr(Bank, "similar", noted("similar", Bank.similar))
+    for text in ("my dog has died", "yes", "tell me a joke", "we saw a heron by the lake"):
         sim.say(text)
-    assert {name for name, _ in checked} == {"claims", "needs_comfort", "continues"}
+    assert {name for name, _ in checked} == {"claims", "needs_comfort", "continues", "similar"}
     assert not any(blocks for _, blocks in checked)
 
 

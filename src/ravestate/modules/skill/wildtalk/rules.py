@@ -273,7 +273,7 @@ async def comfort(ctx: rs.RuleContext) -> rs.Resign | None:
     if not (isinstance(backend, ListeningBackend) or await asyncio.to_thread(skill.performs, heard, State())):
         return rs.Resign("a language model answers")
     suits = await asyncio.to_thread(claims, heard, state) or await asyncio.to_thread(needs_comfort, seen)
-    if not (suits or await is_known(seen)):
+    if not (suits or await asyncio.to_thread(is_known, seen)):
         return rs.Resign("no known reply suits")
     ctx[rawio.output] = await listen(ctx, heard)
     return None

@@ -78,24 +78,29 @@ def heard_in(ctx: rs.RuleContext, text: str, seen: nlp.Analysis | None) -> Heard
 def may_suit(seen: nlp.Analysis | None) -> bool:
     """Return whether `comfort` may have an answer to the utterance; the rule looks closer, in a thread.
 
-    This is a predicate, so it runs on the event loop, and must not wait. Until the examples are learnt, a look at them
-    would take up to seconds. So until then, every utterance may suit.
+    This is a predicate, so it runs on the event loop. It compares the utterance with no examples, which takes some 20 ms.
+    Until the examples are learnt, even the other checks would wait for them. So until then, every utterance may suit.
     """
     if seen is None or not learnt.is_set():
         return seen is not None
-    return may_be_known(seen) or needs_comfort(seen) or may_claim(seen)
+    return may_be_known(seen) or may_need_comfort(seen) or may_claim(seen)
 
 
-def needs_comfort(seen: nlp.Analysis | None) -> bool:
-    """Return whether the user is in sorrow: the tone is sad, and the agent's likely move is to console or to mourn."""
-    if seen is None or seen.question is not None or seen.move is None or is_crisis(seen.normal.text):
+def may_need_comfort(seen: nlp.Analysis) -> bool:
+    """Return whether the likely move in reply to the utterance is to comfort the user. `needs_comfort` looks closer."""
+    if seen.question is not None or seen.move is None or is_crisis(seen.normal.text):
         return False  # a module with explicit answers to distress comes first
-    return listener().overhear(seen, None).tone == "sad" and bool(SORROWFUL & {seen.move.name, seen.move.second})
+    return bool(SORROWFUL & {seen.move.name, seen.move.second})
 
 
-def may_claim(seen: nlp.Analysis | None) -> bool:
-    """Guess quickly whether `claims` will return true, without the state of the conversation."""
-    return seen is not None and listener().claims(Heard(seen.text, seen))
+def needs_comfort(seen: nlp.Analysis) -> bool:
+    """Return whether the user is in sorrow: both the feeling and the likely move say so. Takes some 10 ms, in a thread."""
+    return may_need_comfort(seen) and listener().overhear(seen, None).tone == "sad"
+
+
+def may_claim(seen: nlp.Analysis) -> bool:
+    """Return whether the utterance may be a move in the talk, such as a request for a joke. `claims` looks closer."""
+    return listener().claims(Heard(seen.text, seen))
 
 
 def claims(heard: Heard, state: State) -> bool:
@@ -103,21 +108,20 @@ def claims(heard: Heard, state: State) -> bool:
     return listener().claims(heard, state)
 
 
-def may_be_known(seen: nlp.Analysis | None) -> bool:
-    """Guess quickly whether the listening skill has a reply to this or a very similar utterance. `is_known` checks it.
+def may_be_known(seen: nlp.Analysis) -> bool:
+    """Return whether the listening skill may have a reply to these words or almost the same. `is_known` looks closer.
 
-    Other skills answer hello and goodbye. A short *yes* or *no* belongs to the module that asked.
+    Other skills answer questions, hello and goodbye. A short *yes* or *no* belongs to the module that asked.
     """
-    if seen is None or seen.question is not None or {"greeting", "farewell"} & seen.acts.keys():
+    if seen.question is not None or {"greeting", "farewell"} & seen.acts.keys():
         return False
-    if seen.yesno and len(seen.text.split()) <= SHORT:
-        return False
-    return listener().knows(seen, roughly=True)
+    return not (seen.yesno and len(seen.text.split()) <= SHORT)
 
 
-async def is_known(seen: nlp.Analysis) -> bool:
-    """Return whether the listening skill has a reply to this or a very similar utterance. Takes 50 ms, in a thread."""
-    return may_be_known(seen) and await asyncio.to_thread(listener().knows, seen)
+def is_known(seen: nlp.Analysis) -> bool:
+    """Return whether the listening skill has a reply to these words or almost the same. Takes 10 to 60 ms, in a thread."""
+    skill = listener()
+    return may_be_known(seen) and skill.knows(seen, roughly=True) and skill.knows(seen)
 
 
 async def listen(ctx: rs.RuleContext, heard: Heard) -> str:
