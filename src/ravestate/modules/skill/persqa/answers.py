@@ -65,8 +65,8 @@ def answer(text: str, topic: str, seen: nlp.Analysis) -> list[Fact]:
     where = _WHERE.search(rest) if about.kind in _PLACED else None
     if where and about.kind in ("name", "people") and any(one.label in ("DATE", "TIME") for one in seen.entities):
         return []  # "exam on Monday"
-    tells = {word.low for word in seen.tree.words if word.tag == "VBD" and word.text.islower() and word.lemma != "be"}
-    if about.kind in ("name", "people") and tells & set(rest.lower().split()[:1]):
+    tells = {word.low for word in seen.tree.words if word.tag in ("VBD", "VBN") and word.text.islower()}
+    if about.kind in ("name", "people") and " " in rest and tells & set(rest.lower().split()[:1]):
         return []  # "just made coffee"
     found = tuple(_values(rest[: where.start()] if where else rest, about, seen))
     if where and about.kind == "work" and rest[: where.start()].endswith("ing"):

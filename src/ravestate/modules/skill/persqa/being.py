@@ -27,7 +27,7 @@ def being_in(reader: Utterance, said: nlp.Statement) -> Iterator[Link]:
         yield Link("age", object, value=number)
     elif object.owner is not None and (found := SAYS.get(f"be {object.head} of")):
         yield Link(found[0], object.owner)
-    elif (country := _country(text)) and not object.preposition:
+    elif (country := _country(text, reader.tree.text)) and not object.preposition:
         yield Link("origin", object, value=country)
     elif _is_nationality(reader, object):
         return  # the country is not named: "I'm Kurdish"
@@ -61,10 +61,14 @@ def being_in(reader: Utterance, said: nlp.Statement) -> Iterator[Link]:
         yield from (Link("employer", phrase, sure=False) for phrase in places)
 
 
-def _country(text: str) -> str:
-    """Return the country in the name of its people; empty if there is none: *Denmark*, for *Danish*."""
+def _country(text: str, whole: str) -> str:
+    """Return the country in the name of its people; empty if there is none: *Denmark*, for *Danish*.
+
+    The parser may part *South* from *Korean*, so the utterance as a `whole` counts for words of several parts.
+    """
     words = " ".join(word for word in re.split(r"[\s-]", text.lower()) if word not in NATIONS_BESIDE)
-    return NATIONS.get(words) or NATIONS.get(words.removesuffix("s"), "")
+    longer = (name for name in NATIONS if name.endswith(f" {words}") and name in whole.lower())
+    return NATIONS.get(next(longer, words)) or NATIONS.get(words.removesuffix("s"), "")
 
 
 def _is_nationality(reader: Utterance, phrase: Phrase) -> bool:
