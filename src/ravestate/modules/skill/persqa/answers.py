@@ -66,7 +66,8 @@ def answer(text: str, topic: str, seen: nlp.Analysis) -> list[Fact]:
     if where and about.kind in ("name", "people") and any(one.label in ("DATE", "TIME") for one in seen.entities):
         return []  # "exam on Monday"
     tells = {word.low for word in seen.tree.words if word.tag in ("VBD", "VBN") and word.text.islower()}
-    if about.kind in ("name", "people") and " " in rest and tells & set(rest.lower().split()[:1]):
+    low = rest.lower().split()
+    if about.kind in ("name", "people") and len(low) > 1 and (tells & {low[0]} or low[-1] in WORDS["moments"]):
         return []  # "just made coffee"
     found = tuple(_values(rest[: where.start()] if where else rest, about, seen))
     if where and about.kind == "work" and rest[: where.start()].endswith("ing"):

@@ -71,7 +71,11 @@ def pursuit_in(reader: Utterance, said: nlp.Statement) -> Link | None:
     else:
         habit = verbs[0] != "be" and said.holds and verb.tag in ("VBP", "VB") and not chained and not free
         habit = habit and "to" not in {word.low for word in reader.tree.children(verb, "aux")}  # "to make tea"
-        habit = habit and not NOW & set(said.when.split()) and (direct or not (object.text or phrases))
+        habit = (
+            habit
+            and not (NOW | WORDS["moments"]) & set(said.when.lower().split())
+            and (direct or not (object.text or phrases))
+        )
         fleeting = said.verb in WORDS["states"] | WORDS["passing"]
         asked = reader.asked == "hobby" and "i" in reader.words and said.holds and direct and not fleeting
         wanted = asked or (

@@ -235,6 +235,8 @@ class Reader(Utterance):
             found = next(filter(None, map(SAYS.get, (*keys, before))), None)
             if not found and phrase.preposition in ("for", "in", "with") and said.verb not in WORDS["passing"] | {"be"}:
                 found = ("club", False) if phrase.head in TOPICS["club"].nouns else None  # "I row for the club"
+            if found and found[0] == "liking" and phrase.head in WORDS["liked"]:
+                continue  # "I like a girl in my class"
             if phrase.text and found and self._word_before(phrase) not in WORDS["returning"]:
                 topic = "childhood" if child and found[0] == "home" else found[0]
                 place = next(
