@@ -29,6 +29,8 @@ feeling."""
 SPOILERS = frozenset({"failure", "anger", "worry"})
 """Classes of sentences beside which the classes of `SPOILED` do not count: "I got my results, and I failed"."""
 SPOILED = frozenset({"joy", "affection", "astonishing"})
+CLEAR = 0.65
+"""The minimum confidence of a class of `SPOILED`: a smile at neutral words annoys more than no smile at good news."""
 
 PICTURES: tuple[tuple[Feeling, re.Pattern[str]], ...] = (
     ("affectionate", re.compile("[❤💕💖💗💓💞💘💝💙💚💛💜🧡🤍🥰😍😘😚🤗🫂]|<3")),
@@ -58,7 +60,7 @@ def recognise(text: str, names: Collection[str] = ()) -> Feeling | None:
     found = feelings(said, names)
     spoilt = SPOILED if not SPOILERS.isdisjoint(found) else frozenset[str]()
     for name, feeling in SHARED.items():
-        if name in found and name not in spoilt:
+        if name in found and name not in spoilt and not (name in SPOILED and found[name].score < CLEAR):
             return feeling
     return next((feeling for feeling, picture in PICTURES if picture.search(text[:LONGEST])), None)
 
