@@ -64,3 +64,24 @@ def test_the_listener_leaves_words_of_danger_to_other_modules(begin: Callable[[i
         assert is_crisis(danger)
         assert not talk.listener.knows(seen(danger))
         assert not talk.listener.continues(Heard(danger, seen(danger)), talk.state)
+
+
+@pytest.mark.parametrize("illness", ["my son has a fever", "she is vomiting", "my arm is swollen", "he fainted twice"])
+@pytest.mark.parametrize("question", ["should i call a doctor?", "is that normal?", "can i give him something for it?"])
+def test_advice_about_an_illness_is_left_to_a_doctor(illness: str, question: str, begin: Callable[[int], Talk]) -> None:
+    talk = begin(0)
+    talk.say(illness)
+    said = talk.say(question).lower()
+    assert "doctor" in said or "helpline" in said or "emergency" in said, said
+    assert "helpline" in talk.say("and what should we do now?").lower() or "doctor" in talk.state.said[-1].lower()
+
+
+def test_illness_without_a_question_gets_sympathy_and_no_referral(begin: Callable[[int], Talk]) -> None:
+    talk = begin(0)
+    talk.say("my son has a fever")
+    assert talk.state.said[-1] not in {line.text for line in material().plain["medical"].groups["say"]}
+
+
+@pytest.mark.parametrize("text", ["it is so dead here tonight", "i am half dead", "i am just killing time"])
+def test_a_grave_word_in_a_harmless_phrase_is_not_grave(text: str) -> None:
+    assert not is_grave(text)

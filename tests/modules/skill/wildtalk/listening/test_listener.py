@@ -19,7 +19,7 @@ from ravestate.modules.skill.wildtalk.listening.moment import roles_in
 from ravestate.modules.skill.wildtalk.listening.roles import roles_of
 from ravestate.modules.skill.wildtalk.listening.state import Pending
 
-from .conftest import listener_with, seen
+from .conftest import Talk, listener_with, seen
 
 PLAIN = [
     "the bus came late", "i bought some bread", "my aunt has a garden", "ok", "we sat in the park", "hm",
@@ -354,3 +354,21 @@ def test_a_remark_is_neither_a_question_nor_a_correction(text: str, begin: Calla
         line.text for name in ("fact", "recall", "apologise", "ask") for line in lines_of(material().replies[name])
     }
     assert not {begin(seed).say(text) for seed in range(5)} & excuses
+
+
+@pytest.mark.parametrize(
+    "text", ["he used to sing in the garden", "please, not a song", "how can you sing now?", "i didn't ask for a song"]
+)
+def test_words_about_a_song_that_ask_for_none_get_none(text: str, begin: Callable[[int], Talk]) -> None:
+    talk = begin(0)
+    talk.say("sing a song about a dog")
+    assert "\u266a" not in talk.say(text)
+
+
+def test_a_pronoun_is_looked_up_as_the_person_whom_the_user_mentioned(begin: Callable[[int], Talk]) -> None:
+    """The bank is asked about *my dad is in hospital*, and not only about *he is in hospital*."""
+    talk, other = begin(0), begin(0)
+    talk.say("i am worried about my dad")
+    talk.say("he is in hospital")
+    other.say("my dad is in hospital")
+    assert talk.state.moment == other.state.moment != ""

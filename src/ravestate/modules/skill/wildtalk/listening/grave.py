@@ -23,7 +23,17 @@ def is_grave(text: str) -> bool:
         >>> is_grave("My dog died."), is_grave("My dog barked.")
         (True, False)
     """
-    return _patterns()[0].search(plain(text)) is not None
+    return _patterns()[0].search(_LIVELY.sub("", plain(text))) is not None
+
+
+def is_medical(text: str) -> bool:
+    """Return whether a text has words of illness or injury, about which only a doctor may advise.
+
+    Example:
+        >>> is_medical("He has a fever of 39."), is_medical("He has a new bicycle.")
+        (True, False)
+    """
+    return _patterns()[2].search(plain(text)) is not None
 
 
 def is_crisis(text: str) -> bool:
@@ -36,11 +46,16 @@ def is_crisis(text: str) -> bool:
     return _patterns()[1].search(plain(text)) is not None
 
 
+_LIVELY = re.compile(r"\b(?:so|pretty|quite|totally|really|half) dead\b|\bdead (?:here|tonight|end|line|tired|battery|phone|easy|good|slow|quiet|funny)\b"
+                     r"|\bnobody (?:has |is )?(?:died|dead)\b|\bkill(?:ing)? (?:some |the )?time\b")  # fmt: skip
+"""Phrases in which a grave word is harmless: *it's so dead here*."""
+
+
 @cache
-def _patterns() -> tuple[re.Pattern[str], re.Pattern[str]]:
+def _patterns() -> tuple[re.Pattern[str], re.Pattern[str], re.Pattern[str]]:
     table: Any = load_yaml((files(__package__ or "") / FILE).read_text(encoding="utf-8"), FILE)
     grave = [*table["words"].split(), *table["phrases"], *table["crisis"]]
-    return _any_of(grave), _any_of(table["crisis"])
+    return _any_of(grave), _any_of(table["crisis"]), _any_of(table["medical"])
 
 
 def _any_of(expressions: list[str]) -> re.Pattern[str]:

@@ -25,7 +25,7 @@ from .asked import WORDING, Asked, asked_in, options_between
 from .asking import FEW_WORDS, SHORT, asking_sentence, kind_of
 from .bank import CLOSE, Found
 from .following import follow_up_in, rest_of
-from .grave import is_grave
+from .grave import is_grave, is_medical
 from .lookup import ALIKE, is_dark, near_in
 from .material import Material
 from .moment import Moment
@@ -71,6 +71,10 @@ _OFFER = re.compile(r"(?:do you want|would you like|shall i|can i).{0,9} (?:know
 _MACHINES = word_set("robot bot machine computer program ai chatbot")
 _UNENDING = word_set("and but or because if the a an my your is 's are 're 'm to")
 """Function words that cannot end an utterance."""
+_ADVISED = re.compile(
+    r"\b(?:should|shall|can|could|must|do) (?:i|we)\b|\bnormal\b|\bdangerous\b|\bdo you think\b|\bwhat helps\b"
+)
+"""Words that ask for advice."""
 _SAD = SORROWS | {"tiredness"}
 _JUDGING = frozenset(("think", "feel", "know"))
 """Verbs of questions such as *what do you think about jazz*."""
@@ -228,6 +232,8 @@ def _understand(found: Hearing, phrases: Material, heard: Heard, seen: Analysis,
         "request": request and len(seen.sentences) == 1,
         "asked": found.asked is not None,
         "advised": seen.advised,
+        "medical": _is_medical(phrases, seen, state, asking)
+        and not (alike and any(map(is_medical, nearest.moment.examples))),
         "again": found.asked is not None and bool({"another", "meant"} & seen.asks.keys()) and state.asked is not None,
         "wording": found.asked is not None and found.asked.kind in WORDING,
         "guessed": state.moment == "guess" and not asking and "contradiction" not in seen.acts,
@@ -259,6 +265,14 @@ def _tone(seen: Analysis, moves: Sequence[str], feeling: Moment | None) -> str:
     if tone == "glad" and moves and "rejoice" not in moves:
         return ""  # "we tried everything": the classifier of tones alone is too often wrong
     return tone or ("glad" if moves == ("rejoice",) and not may_be_dark(seen.text) else "")
+
+
+def _is_medical(phrases: Material, seen: Analysis, state: State, asking: str) -> bool:
+    """Return whether the user wants advice about an illness or injury, now or after such a question."""
+    wanted = bool(asking) and (seen.advised or _ADVISED.search(plain(asking)) is not None)
+    last = state.said[-1] if state.said else ""
+    lately = any(line.text == last for lines in phrases.plain["medical"].groups.values() for line in lines)
+    return wanted and (lately or is_medical(f"{state.before} {seen.normal.text}"))
 
 
 def _leaves(seen: Analysis) -> bool:

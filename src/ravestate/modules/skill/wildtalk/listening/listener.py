@@ -198,7 +198,8 @@ class Listener:
         if repair is None:
             return None
         hearing = Hearing(set())
-        named = kinds_in(self._phrases.shows, repair.thing)[:1]
+        shown = bool(state.shown) and state.said[-1].endswith(state.shown[-1])
+        named = kinds_in(self._phrases.shows, repair.thing)[:1] if shown else []
         if named:  # "I meant the riddle"
             text, after = Turn(self._phrases.shows, heard.text, heard.seen, state, chance).start(Wish(named[0]))
             return Answer(text, after.having_said(text, text))

@@ -79,7 +79,7 @@ def replies(
         for kind in kinds:
             yield _framed(lines[kind].lines(*names), NOTHING, state)
         return
-    if drawn < ALONE:
+    if drawn < ALONE and mood not in ("sad", "quiet", "tired"):
         yield [[front]]
     if drawn >= REMARKED:
         yield _framed(lines["questions"].lines(*names), front, state)

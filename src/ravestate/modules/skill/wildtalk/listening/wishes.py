@@ -32,6 +32,8 @@ _OFFERS = re.compile(
     r"\b(?:i|we|he|she|they)(?:'ve|'m)? (?:(?:just|always|once|also|really|never|don't) )?(?:have|had|got|know|knew|read|"
     r"write|wrote|sing|sang|told|tell|heard|like|love|liked|loved|am|was|were|said|remember)\b"
     r"|\bi (?:\w+ )?(?:want|need|have|would like|will|'ll) to (?:tell|ask|sing|read|write|play you)\b"
+    r"|\b(?:not|no|stop|without|enough of) (?:an?|the|that|this|your|any|more)? ?(?:joke|song|sing|singing|stor|riddle|poetry)"
+    r"|^\W*(?:how|why) (?:can|could|do|did|would|are|were) you\b"
     r"|\b(?:used to|would always|loved to|liked to) (?:sing|tell|read|play|write)\b"
     r"|\b(?:don't|didn't|do not|did not|never) (?:\w+ )?(?:ask|asked|want|wanted|need)\b(?!.*\b(?:but|instead|rather)\b)"
     r"|\b(?:tell|ask|show|sing|read) you\b|\b(?:do|would) you (?:like|want) to hear\b|\bto hear (?:my|mine)\b|\bask you\b"
@@ -105,6 +107,7 @@ def wish_in(shows: Mapping[str, Any], seen: Analysis, state: State, acts: Sequen
     if not kind and lately and short:
         corrected = _CORRECTS.search(low) and state.said[-1].endswith(state.shown[-1])
         kind = state.show if _ANOTHER.search(low) or corrected else ""
+        kind = (kinds_in(shows, low) or [kind])[-1] if corrected else kind  # "not a song, I wanted a joke"
     if not kind and acts and not _OFFERS.search(low):
         kind = acts[0]
     if not kind:
