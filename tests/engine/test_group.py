@@ -15,6 +15,8 @@ def test_the_table_that_all_groups_share_refuses_entries() -> None:
         NOTHING.setdefault("slot", {})
     with pytest.raises(EngineError, match="shared"):
         NOTHING.update(slot=None)
+    with pytest.raises(EngineError, match="shared"):
+        NOTHING.__ior__({"slot": None})
     assert NOTHING == {}
 
 

@@ -151,7 +151,7 @@ class State(Memory):
         activations whose refusals depend on these groups ask again (`Waits.wake`)."""
         self.hoping: dict[tuple[int, int], dict[Activation, None]] = NOTHING
         """Hope → the waiting activations that have it. A hope is something outside an activation's groups that may lift
-        the activation's refusal (``refusal.py``)."""
+        the activation's refusal (``activation.py``)."""
         self.hope_counts: dict[tuple[int, int], int] = NOTHING
         """Hope → its greatest count in the refusals of these activations (`Horizon.hopes`)."""
         self.stirred: dict[tuple[int, int], None] = NOTHING

@@ -1,6 +1,6 @@
 """Choose the move that a good listener makes next: rejoice, console, advise... ``moves.yaml`` lists the moves.
 
-The classifier is a kernel ridge regression, as in `Matcher`, but over whole utterances. The kernel is a sum of three
+The classifier is a kernel ridge regression, as in `Matcher`, but over whole utterances. The kernel is a constant plus three
 similarities: of the whole utterance's meaning, of its last sentence's meaning, and of form (persons, question, length).
 """
 
@@ -76,7 +76,7 @@ class Move:
     """``interest``, ``accept``, ``rejoice``, ``console``, ``mourn``, ``apologise``, ``explain``, ``fact``, ``self``, ``opinion``,
     ``advice``, ``recall``, ``test``, ``entertain``, ``obey``, ``greet``, ``introduce``, ``farewell`` or ``thank``."""
     score: float
-    """The confidence, 0 to 1: the share of such utterances for which this move is right."""
+    """The confidence, 0 to 1: of all utterances with this score, the share for which the move is right."""
     second: str = ""
     """The next best move."""
 
