@@ -49,7 +49,8 @@ class Group:
     Attributes:
         taken: Key: the number of a slot that is taken in the group; value: the runs that hold the slot, or None if a
             run has finished with it.
-        entries: The group's spikes that a `Half` holds (``halves.py``).
+        entries: The group's spikes that a half holds (``halves.py``). Halves whose rules write no slot are left out,
+            unless they have `Half.kin`.
         interested: The waiting activations that ask for consent again when something changes in the group
             (`State.dirty`).
         patience_ends: The rivals under pressure that have no activation yet (L16). Key: the number of the rival's

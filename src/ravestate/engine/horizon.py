@@ -133,7 +133,7 @@ class Horizon:
         self._by_rule.clear()
 
     def open_bits(self, clause: Clause, group: Group) -> int:
-        """Return, as bits, the needs that a group may meet in a clause's activations without a spike of the group."""
+        """Return, as bits, the needs of a clause that a group may meet for activations without a spike of the group."""
         if clause.apart:
             return 0  # an activation of this clause takes all its spikes from one group
         reach = self._rules(group).keys()

@@ -51,8 +51,8 @@ class Memory:
         self.values: dict[int, Any] = {}
         """Number of a slot that was written or read → its value."""
         self.unseen: dict[int, dict[str, Any]] = NOTHING
-        """Key: the number of a collection that was not read since its last change; value: its items, which can change
-        without a copy."""
+        """Key: the number of a collection that was not read since its last change; value: its items, which a
+        write may change without a copy."""
         self.ran: dict[int, float] = NOTHING
         """Number of a rule with a cooldown → the time of its last run (seconds)."""
         self.retired = NO_NUMBERS
