@@ -31,7 +31,7 @@ class Nothing(dict[Any, Any]):
         """Raise an error: this table refuses all entries."""
         self["entries"] = args, entries
 
-    def __ior__(self, value: Any) -> Any:
+    def __ior__(self, value: Any) -> Any:  # type: ignore[misc]  # mypy compares this with `dict.__or__`
         """Raise an error: this table refuses all entries."""
         self.update(value)
 
