@@ -37,7 +37,7 @@ class Nothing(dict[Any, Any]):
 
 
 NOTHING: Final[dict[Any, Any]] = Nothing()
-"""The shared empty table: the value of an attribute that has no entry yet. The first entry makes a new table."""
+"""The shared empty table: the value of an attribute without entries. Before the first entry, its owner makes a table."""
 
 NO_NUMBERS: Final[frozenset[int]] = frozenset()
 """The shared empty set of numbers: the value of an attribute that seldom has members."""

@@ -60,7 +60,7 @@ class Memory:
         self.dropped: dict[str, int] = NOTHING
         """Name of a signal → how many of its spikes were dropped because of its limit (L23)."""
         self.watched: dict[str, int] = {}
-        """The names of the signals whose spikes are reported as effects, as the keys of a table."""
+        """Key: the name of a signal whose spikes are reported as effects; the value is always 1."""
         self.blamed = NO_NUMBERS
         """The ids of the predicates whose failure was reported."""
         self.looped = NO_NUMBERS
