@@ -37,7 +37,7 @@ class Nothing(dict[Any, Any]):
 
 
 NOTHING: Final[dict[Any, Any]] = Nothing()
-"""The shared empty table: the value of an attribute without entries. Before the first entry, its owner makes a table."""
+"""The shared empty table: the value of an attribute without entries. The first entry needs a table of its own."""
 
 NO_NUMBERS: Final[frozenset[int]] = frozenset()
 """The shared empty set of numbers: the value of an attribute that seldom has members."""
@@ -171,7 +171,7 @@ class Group:
                 self.roster = None
 
     def take(self, slot: int, holders: tuple[Activation, ...] | None) -> None:
-        """Take a slot for the runs `holders`, or for good if that is None. Runs share a slot if their groups have merged."""
+        """Take a slot for the runs `holders`; None takes it for good. Runs of merged groups may share a slot."""
         if self.taken is NOTHING:
             self.taken = {slot: holders}
         else:
