@@ -184,8 +184,8 @@ def activations(state: State) -> dict[int, list[ActivationState]]:
 def stand_ins(state: State) -> dict[int, list[Activation]]:
     """Return, by rule, the activations that the engine has not made yet.
 
-    Entries of halves (``halves.py``) and alternatives (``conflict_sets.py``) stand for these activations. No table of the engine has these activations, because an explanation
-    changes nothing.
+    Entries of halves (``halves.py``) and alternatives (``conflict_sets.py``) stand for these activations. No table of
+    the engine has them, because an explanation changes nothing.
     """
     found: dict[int, list[Activation]] = {}
     for half, spikes in state.halves.items():
