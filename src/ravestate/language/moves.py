@@ -1,7 +1,8 @@
 """Choose the move that a good listener makes next: rejoice, console, advise... ``moves.yaml`` lists the moves.
 
-The classifier is a kernel ridge regression, as in `Matcher`, but over whole utterances. The kernel is a constant plus three
-similarities: of the whole utterance's meaning, of its last sentence's meaning, and of form (persons, question, length).
+The classifier is a kernel ridge regression, as in `Matcher`, but over whole utterances. The kernel is a constant plus
+three similarities: of the whole utterance's meaning, of its last sentence's meaning, and of form (persons, question,
+length).
 """
 
 from __future__ import annotations

@@ -1,4 +1,7 @@
-"""Properties of every correction, such as "Leipzig, not Leeds". The quality set ``changes_rows`` measures how many wordings are understood."""
+"""Properties of every correction, such as "Leipzig, not Leeds".
+
+The quality set ``changes_rows`` measures how many wordings are understood.
+"""
 
 from __future__ import annotations
 

@@ -145,8 +145,8 @@ class PhraseBook:
         """Choose a phrase at random, and fill in its parameters.
 
         A phrase is eligible if all its parameters have values; None counts as missing. If a phrase begins with a
-        parameter, its first word gets a capital letter, unless the word has one already, like *eBay*. The template `last`, which was used the last time, is not chosen again if
-        another template is eligible.
+        parameter, its first word gets a capital letter, unless the word has one already, like *eBay*. The template
+        `last`, which was used the last time, is not chosen again if another template is eligible.
 
         Raises:
             RuleError: There is no such intent or language, or each phrase lacks a parameter.
