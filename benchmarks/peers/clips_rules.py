@@ -1,4 +1,5 @@
-"""CLIPS, the C rule engine, through clipspy: facts for signals, salience for the competition, Python actions.
+"""CLIPS, the C rule engine, through clipspy. Facts stand for signals, and salience decides which rule goes first.
+Actions are Python functions.
 
 There are two styles. In ``raise``, a rule's action is a Python function that asserts the next fact itself, as a rule
 function of Ravestate raises a signal. In ``return``, the Python function only returns a decision, and the rule asserts

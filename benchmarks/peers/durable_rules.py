@@ -1,4 +1,5 @@
-"""durable_rules, a rule engine in C: facts for signals, priorities for the competition, Python actions.
+"""durable_rules, a rule engine in C. Facts stand for signals, and priorities decide which rule goes first. Actions are
+Python functions.
 
 The fallback has the lowest priority, and needs an empty output. The benchmark retracts the facts of an input after the
 measurement.

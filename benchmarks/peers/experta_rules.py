@@ -1,4 +1,5 @@
-"""experta, a rule engine in pure Python after the model of CLIPS: facts for signals, salience for the competition."""
+"""experta, a rule engine in pure Python after the model of CLIPS. Facts stand for signals, and salience decides which
+rule goes first."""
 
 import time
 

@@ -15,6 +15,9 @@ def test_the_table_that_all_groups_share_refuses_entries() -> None:
         NOTHING.setdefault("slot", {})
     with pytest.raises(EngineError, match="shared"):
         NOTHING.update(slot=None)
+    table = NOTHING
+    with pytest.raises(EngineError, match="shared"):
+        table |= {"slot": None}
     assert NOTHING == {}
 
 

@@ -50,6 +50,6 @@ def test_import_has_no_side_effects() -> None:
 
 @pytest.mark.parametrize("package", ["declare", "policy", "engine", "errors"])
 def test_pure_packages_load_nothing_impure(package: str) -> None:
-    """This includes indirect imports: the clock, the loop and the threads stay in `runtime`."""
+    """Indirect imports count, too. The event loop and the thread pool belong to `runtime`."""
     loaded = set(loaded_by(f"ravestate.{package}")["loaded"])  # type: ignore[call-overload]
     assert not loaded & {"asyncio", "concurrent.futures", "queue", "pydantic", "yaml", "ravestate.runtime"}

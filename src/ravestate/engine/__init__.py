@@ -16,7 +16,7 @@ passes through the parts in this order:
    Activations that need no consent start first (`Agenda.start_free`). The caller performs these effects, reports the
    runs that have ended, and calls `Engine.effects` again.
 4. *Consent.* After all of these have started, `Agenda.consent_round` lets the other ready activations ask.
-   `Consent.ask` looks for rivals, and a `Horizon` judges whether each may still become ready. With consent,
+   `Consent.ask` looks for rivals, and a `Horizon` judges whether each rival may still become ready. With consent,
    `Runs.start` starts the run. Without it, `Waits.begin` keeps the `Refusal`. A `Roster` finds the rivals in a large
    group. If a refusal is certain, `Leaders` give it without a search. `stalemate` finds activations that wait for
    nothing but each other.

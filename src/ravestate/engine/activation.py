@@ -241,7 +241,7 @@ SEEN: Final = 2
 """Kinds of *hope*. A hope is a thing outside an activation's groups whose change may lift the activation's refusal.
 
 `RULE`: the activations of a rule in other groups. `OUTSIDE`: the live rules of other groups that may raise a signal.
-`SEEN`: the next spike of a signal, at which a detached need looks.
+`SEEN`: the next spike of a signal that a detached need looks at.
 """
 
 
@@ -252,7 +252,8 @@ class Refusal:
         names: Key: the name of a rule that the activation waits for; value: the best of that rule's clauses that are
             rivals.
         blockers: The live activations on whose progress the refusal depends. `explain` does not show them.
-        sure: For each rival that work in progress will make ready or rule out: the activations that do this work.
+        sure: An entry for each rival whose readiness depends only on work in progress: the activations that do this
+            work.
         taken: Whether a run has taken one of the activation's slots.
         in_doubt: Whether a rival may never be ready, so that only the end of its patience ends the wait.
         hopes: The hopes of the activation → a count for each (`Horizon.hopes`).

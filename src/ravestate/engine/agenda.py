@@ -249,7 +249,7 @@ class Agenda:
 
 
 def _is_taken(activation: Activation) -> bool:
-    """Return whether one of the activation's slots is taken in each of its groups."""
+    """Return whether each of the activation's groups has one of the activation's slots taken."""
     slots = activation.clause.rule.slotset
     for group in activation.firm_groups():
         if not group.taken or group.taken.keys().isdisjoint(slots):

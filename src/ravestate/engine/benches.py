@@ -44,8 +44,8 @@ class Benches:
         self._place(self.state.pools.pop(half), partner)
 
     def check(self, partner: Spike) -> None:
-        """Give a head to each bench of a counterpart. If the bench can no longer use the counterpart, give it
-        another."""
+        """Give a head to each bench of a counterpart. If a bench can no longer use this counterpart, give the bench
+        another one."""
         state = self.state
         for bench in list(state.benches.get(partner, {}).values()):
             rule = bench.half.needs[0].clause.rule
@@ -170,6 +170,6 @@ def other_need(need: Need) -> Need:
 
 
 def _is_taken(bench: Bench) -> bool:
-    """Return whether a slot of the rule is taken in the group of a bench's counterpart."""
+    """Return whether a slot of the bench's rule is taken in the group of the bench's counterpart."""
     assert bench.partner is not None
     return not bench.partner.group.root().taken.keys().isdisjoint(bench.half.slotset)

@@ -159,7 +159,7 @@ class Engine:
 
     @property
     def watched(self) -> dict[str, int]:
-        """The names of the signals whose spikes are reported as effects, as the keys of a table."""
+        """Key: the name of a signal whose spikes are reported as effects; the value is always 1."""
         return self._latest.watched
 
     @property

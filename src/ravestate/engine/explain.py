@@ -22,7 +22,10 @@ if TYPE_CHECKING:
 
 @dataclass(frozen=True, slots=True)
 class ClauseState:
-    """A clause: its condition as declared, its utility and its effective utility now (nats), its slot predicates."""
+    """A clause: its condition as declared, and its utility and effective utility now (nats).
+
+    `gates` has the text of each slot predicate, and whether the predicate is true now.
+    """
 
     condition: str
     signals: tuple[str, ...]
@@ -41,7 +44,7 @@ class ActivationState:
         holds: The signal and the age (seconds) of each spike that the activation holds.
         lacks: The signals of the spikes that it lacks.
         waits_for: The rules that it waits for, and by how many nats each is ahead (0 for a taken slot or a tie).
-        until: The latest time at which the activation runs or gives a spike up (seconds); None if there is none.
+        until: The time (seconds) by which the activation runs or gives a spike up; None if nothing limits the wait.
     """
 
     id: int
@@ -179,10 +182,10 @@ def activations(state: State) -> dict[int, list[ActivationState]]:
 
 
 def stand_ins(state: State) -> dict[int, list[Activation]]:
-    """Return, by rule, the activations for which entries of halves and queues of alternatives stand.
+    """Return, by rule, the activations that the engine has not made yet.
 
-    See ``halves.py`` and ``conflict_sets.py``. No table of the engine has these activations, because an explanation
-    changes nothing.
+    Entries of halves (``halves.py``) and alternatives (``conflict_sets.py``) stand for these activations. No table of
+    the engine has them, because an explanation changes nothing.
     """
     found: dict[int, list[Activation]] = {}
     for half, spikes in state.halves.items():

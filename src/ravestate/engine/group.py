@@ -31,23 +31,30 @@ class Nothing(dict[Any, Any]):
         """Raise an error: this table refuses all entries."""
         self["entries"] = args, entries
 
+    def __ior__(self, value: Any) -> Any:  # type: ignore[misc]  # mypy compares this with `dict.__or__`
+        """Raise an error: this table refuses all entries."""
+        self.update(value)
+
 
 NOTHING: Final[dict[Any, Any]] = Nothing()
-"""The shared empty table: the value of an attribute that has no entry yet. The first entry makes a new table."""
+"""The shared empty table: the value of an attribute without entries. The first entry needs a table of its own."""
 
 NO_NUMBERS: Final[frozenset[int]] = frozenset()
-"""The shared empty set of numbers: the value of an attribute that seldom gets a member."""
+"""The shared empty set of numbers: the value of an attribute that seldom has members."""
 
 
 class Group:
     """The slots that are taken in a group, and the activations that have a stake in it.
 
     Attributes:
-        taken: Number of a slot taken in the group → the runs that hold it, or None if a run has finished with it.
-        entries: The group's spikes that wait in a half for a counterpart, without an activation (``halves.py``).
-        interested: The waiting activations that ask again when something changes in the group (`State.dirty`).
-        patience_ends: Key: the number of a clause whose stand-by is a rival; value: when the rival's patience ends or
-            has ended (seconds).
+        taken: Key: the number of a slot that is taken in the group; value: the runs that hold the slot, or None if a
+            run has finished with it.
+        entries: The group's spikes that a half holds (``halves.py``). Halves whose rules write no slot are left out,
+            unless they have `Half.kin`.
+        interested: The waiting activations that ask for consent again when something changes in the group
+            (`State.dirty`).
+        patience_ends: The rivals under pressure that have no activation yet (L16). Key: the number of the rival's
+            clause; value: the time (seconds) at which the rival's patience ends, possibly in the past.
         roster: The members of a large group by slot and by rule (``roster.py``); None until a question needs them.
         answers: Key: the number of a slot; value: the rule that first finished with the slot, and the number of that
             rule's activation. The engine fills this table only while there is a tracer.
@@ -88,7 +95,7 @@ class Group:
 
     @property
     def members(self) -> tuple[Activation, ...]:
-        """The activations with non-detached spikes of the group; the first to join comes first."""
+        """The activations with non-detached spikes of the group, in the order in which they joined."""
         member = self._member
         if self._others:
             return tuple(self._others) if member is None else (member, *self._others)
@@ -100,17 +107,23 @@ class Group:
         return len(self._others) + (self._member is not None)
 
     def writers(self, slots: tuple[int, ...], causes: Causes) -> Iterable[Activation]:
-        """Return the members that may write one of the slots, the first to join first. In a small group, return all."""
+        """Return the members that may write one of the slots, in the order in which they joined.
+
+        In a small group, return all members.
+        """
         return self.members if self.count <= FEW else self._roster(causes).writers(slots)
 
     def causers(self, slots: tuple[int, ...], causes: Causes) -> Iterable[RulePlan]:
-        """Return the rules of the members that may trigger a writer of one of the slots. In a small group, return all."""
+        """Return those of the members' rules that may trigger a writer of one of the slots.
+
+        In a small group, return the rules of all members.
+        """
         if self.count <= FEW:
             return dict.fromkeys([member.clause.rule for member in self.members])
         return self._roster(causes).causers(slots)
 
     def by_rule(self, causes: Causes) -> Mapping[int, Mapping[Activation, None]]:
-        """Return the members, by the number of their rule."""
+        """Return the members by the numbers of their rules."""
         if self.count > FEW:
             return self._roster(causes).rules
         found: dict[int, dict[Activation, None]] = {}
@@ -158,7 +171,7 @@ class Group:
                 self.roster = None
 
     def take(self, slot: int, holders: tuple[Activation, ...] | None) -> None:
-        """Take a slot for the runs `holders`; None takes it for good. Runs share a slot if their groups have merged."""
+        """Take a slot for the runs `holders`; None takes it for good. Runs of merged groups may share a slot."""
         if self.taken is NOTHING:
             self.taken = {slot: holders}
         else:
@@ -187,7 +200,7 @@ class Group:
         return next((self.answers[slot] for slot in slots if slot in self.answers), ("", 0))
 
     def concern(self, activation: Activation) -> None:
-        """Make a waiting activation ask again when something changes in this group (`State.dirty`)."""
+        """Make a waiting activation ask for consent again when something changes in this group (`State.dirty`)."""
         if self.interested is NOTHING:
             self.interested = {activation: None}
         else:

@@ -1,6 +1,6 @@
 """Halves: first spikes that wait, without an activation, for a second spike.
 
-A clause with two constraints, its *needs*, takes two spikes. A *half* (`Half`) is a group of needs for the same signal,
+A clause with two constraints, its *needs*, takes two spikes. A *half* (`Half`) is a set of needs for the same signal,
 all of which the engine can treat alike. A thousand rules `input & topic` would need a thousand activations for each
 input, although only a few of the topics occur. So the half holds the first spike as an *entry* in a table
 (``entries.py``), without activations.
@@ -266,5 +266,5 @@ def _birth(spike: Spike) -> int:
 
 
 def _need(clause: Clause, spike: Spike) -> Need:
-    """Return which of a clause's two needs a spike meets."""
+    """Return the one of a clause's two needs that a spike meets."""
     return clause.needs[0] if clause.needs[0].signal is spike.signal else clause.needs[1]

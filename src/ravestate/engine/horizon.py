@@ -63,7 +63,7 @@ class Horizon:
     Attributes:
         roots: The live activations on which the latest derivation with the result `SURE` rests.
         visited: The groups on whose state the results depend.
-        hopes: Key: a kind (``refusal.py``), and the number of a rule or signal whose change may change the results;
+        hopes: Key: a kind (``activation.py``), and the number of a rule or signal whose change may change the results;
             value: a count. For `OUTSIDE`, the count is a limit: the change of an activation matters only if its rule
             has at most that many other activations. For other kinds, it is 0.
         recheck: The earliest time (seconds) at which a spike that the results need reaches its maximum age.
@@ -133,7 +133,7 @@ class Horizon:
         self._by_rule.clear()
 
     def open_bits(self, clause: Clause, group: Group) -> int:
-        """Return, as bits, the needs that a group may meet in a clause's activations without a spike of the group."""
+        """Return, as bits, the needs of a clause that a group may meet for activations without a spike of the group."""
         if clause.apart:
             return 0  # an activation of this clause takes all its spikes from one group
         reach = self._rules(group).keys()

@@ -213,7 +213,7 @@ class Matching:
         holdings.update(activation)
 
     def _show(self, need: Need, spike: Spike) -> None:
-        """Give a new spike to the activations that look at its signal, because they hold the newest spike (L19)."""
+        """Give a new spike to the activations that look at its signal, in place of their older spike (L19)."""
         for activation in list(self.state.active.get(need.clause.rule.index, ())):
             if activation.clause is need.clause and activation.state < RUNNING and not activation.missing & need.bit:
                 held = activation.spike(need)

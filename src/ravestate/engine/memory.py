@@ -51,8 +51,8 @@ class Memory:
         self.values: dict[int, Any] = {}
         """Number of a slot that was written or read → its value."""
         self.unseen: dict[int, dict[str, Any]] = NOTHING
-        """Key: the number of a collection that was not read since its last change; value: its items, which can change
-        without a copy."""
+        """Key: the number of a collection that was not read since its last change; value: its items, which a
+        write may change without a copy."""
         self.ran: dict[int, float] = NOTHING
         """Number of a rule with a cooldown → the time of its last run (seconds)."""
         self.retired = NO_NUMBERS
@@ -60,7 +60,7 @@ class Memory:
         self.dropped: dict[str, int] = NOTHING
         """Name of a signal → how many of its spikes were dropped because of its limit (L23)."""
         self.watched: dict[str, int] = {}
-        """The names of the signals whose spikes are reported as effects, as the keys of a table."""
+        """Key: the name of a signal whose spikes are reported as effects; the value is always 1."""
         self.blamed = NO_NUMBERS
         """The ids of the predicates whose failure was reported."""
         self.looped = NO_NUMBERS

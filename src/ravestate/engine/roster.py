@@ -23,7 +23,7 @@ class Roster(Generic[Member]):
     """The members of a causal group: activations. This class uses only their rules.
 
     Attributes:
-        rules: Number of a rule → its activations in the group, the first to join first.
+        rules: Number of a rule → its activations in the group, in the order in which they joined.
     """
 
     __slots__ = ("_causers", "_causes", "_count", "_places", "_writers", "rules")
@@ -32,7 +32,7 @@ class Roster(Generic[Member]):
         self._causes = causes
         self.rules: dict[int, dict[Member, None]] = {}
         self._writers: dict[int, dict[Member, None]] = {}  # slot → the members that write it
-        self._causers: dict[int, dict[int, None]] = {}  # slot → the rules of members that may trigger its writers
+        self._causers: dict[int, dict[int, None]] = {}  # slot → the members' rules that may trigger its writers
         self._places: dict[Member, int] = {}  # member → its place in the order of joining
         self._count = 0
         for member, rule in members:
@@ -63,13 +63,13 @@ class Roster(Generic[Member]):
                 del self._causers[slot][rule.index]
 
     def writers(self, slots: tuple[int, ...]) -> Iterable[Member]:
-        """Return the members that write one of the slots, the first to join first."""
+        """Return the members that write one of the slots, in the order in which they joined."""
         if len(slots) == 1:
             return self._writers.get(slots[0], {})
         found = {member for slot in slots for member in self._writers.get(slot, ())}
         return sorted(found, key=self._places.__getitem__)
 
     def causers(self, slots: tuple[int, ...]) -> list[RulePlan]:
-        """Return the rules of the members that may trigger a writer of one of the slots."""
+        """Return those of the members' rules that may trigger a writer of one of the slots."""
         found = dict.fromkeys([rule for slot in slots for rule in self._causers.get(slot, ())])
         return [self._causes.rules[rule] for rule in found]

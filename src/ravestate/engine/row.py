@@ -32,8 +32,7 @@ class Row:
         self._starts: dict[Need, int] = {}
 
     def find(self, need: Need, state: State, *, all_: bool) -> list[Spike]:
-        """Return a list with the oldest spike that the half holds for a need; with `all_`, a list with all such
-        spikes."""
+        """Return the spikes that the half holds for a need, oldest first; without `all_`, only the oldest."""
         self._catch_up()
         spikes, found = self._spikes, list[Spike]()
         place = self._starts.get(need, 0)

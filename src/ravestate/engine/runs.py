@@ -186,7 +186,7 @@ class Runs:
             del self.state.watches[watch.clause]
 
     def _consume(self, run: Activation) -> None:
-        """Settle a run as Done (L18): consume its slots in its groups; make their other writers give up the spikes."""
+        """Settle a run as Done (L18): consume its slots in its groups; make the slots' other writers give up the spikes."""
         state = self.state
         rule = run.clause.rule
         if not rule.slots:

@@ -123,9 +123,9 @@ class State(Memory):
         self.pools: dict[Half, Bench] = NOTHING
         """Half with benches (``benches.py``) → the bench of its spikes in `halves`."""
         self.benches: dict[Spike, dict[Half, Bench]] = NOTHING
-        """Spike → half → the bench of the half that has this spike as its counterpart."""
+        """Counterpart (a spike) → half → the bench of this half that shares the counterpart."""
         self.seats: dict[Half, dict[Spike, Bench]] = NOTHING
-        """Half with benches → spike that the half holds → the spike's bench."""
+        """Half with benches → each spike that the half holds → the bench of the spike."""
         self.headless: dict[Spike, None] = NOTHING
         """The counterparts of benches whose heads may have gone."""
         self.patience_ends: dict[Spike, dict[Half, list[tuple[int, float]]]] = NOTHING
@@ -151,7 +151,7 @@ class State(Memory):
         activations whose refusals depend on these groups ask again (`Waits.wake`)."""
         self.hoping: dict[tuple[int, int], dict[Activation, None]] = NOTHING
         """Hope → the waiting activations that have it. A hope is something outside an activation's groups that may lift
-        the activation's refusal (``refusal.py``)."""
+        the activation's refusal (``activation.py``)."""
         self.hope_counts: dict[tuple[int, int], int] = NOTHING
         """Hope → its greatest count in the refusals of these activations (`Horizon.hopes`)."""
         self.stirred: dict[tuple[int, int], None] = NOTHING

@@ -4,7 +4,7 @@ Each waiting activation keeps the reasons for its wait, a `Refusal`. It asks aga
 
 - a causal group on which the refusal depends (`Refusal.interests`)
 - a *hope*: something outside these groups that may lift the refusal, such as a live rule of another group
-  (``refusal.py``)
+  (``activation.py``)
 
 It also asks again at its recheck time, and when its rule or a rival begins a cooldown. All waiting activations ask
 again when the rules change, or when a slot with predicates changes. The engine compares each change of an activation

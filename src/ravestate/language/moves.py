@@ -1,7 +1,8 @@
 """Choose the move that a good listener makes next: rejoice, console, advise... ``moves.yaml`` lists the moves.
 
-The classifier is a kernel ridge regression, as in `Matcher`, but over whole utterances. The kernel is a sum of three
-similarities: of the whole utterance's meaning, of its last sentence's meaning, and of form (persons, question, length).
+The classifier is a kernel ridge regression, as in `Matcher`, but over whole utterances. The kernel is a constant plus
+three similarities: of the whole utterance's meaning, of its last sentence's meaning, and of form (persons, question,
+length).
 """
 
 from __future__ import annotations
@@ -76,7 +77,7 @@ class Move:
     """``interest``, ``accept``, ``rejoice``, ``console``, ``mourn``, ``apologise``, ``explain``, ``fact``, ``self``, ``opinion``,
     ``advice``, ``recall``, ``test``, ``entertain``, ``obey``, ``greet``, ``introduce``, ``farewell`` or ``thank``."""
     score: float
-    """The confidence, 0 to 1: the share of such utterances for which this move is right."""
+    """The confidence, 0 to 1: of all utterances with this score, the share for which the move is right."""
     second: str = ""
     """The next best move."""
 

@@ -64,9 +64,8 @@ def test_a_phrase_book_can_be_loaded_from_strings_and_paths(tmp_path: Path) -> N
         ("DE-at", "Servus!"), ("de-AT-x", "Servus!"), ("fr", "Hello!"),
     ],
 )  # fmt: skip
-def test_a_language_without_phrases_falls_back_to_a_related_language(
-    tmp_path: Path, language: str, expected: str
-) -> None:
+def test_phrases_come_from_the_nearest_language_that_has_some(tmp_path: Path, language: str, expected: str) -> None:
+    """The order is: the language itself, the language without the region, the default language."""
     assert texts(book(tmp_path, BASE, language=language), "greet")[0] == expected
     assert texts(book(tmp_path, BASE), "greet", language)[0] == expected
 
@@ -136,7 +135,7 @@ def test_doubled_braces_in_a_phrase_become_single_braces() -> None:
     ("intent", "parameters", "message"),
     [
         ("gret", {}, r"no phrases for the intent 'gret'; did you mean 'greet'\? \(known: greet, only\)"),
-        ("greet", {"nam": 1}, r"lacks a parameter; give name \(given: nam; did you mean 'nam'\?\), or add"),
+        ("greet", {"nam": 1}, r"lacks a parameter; give name \(given: nam; did you mean 'name'\?\), or add"),
         ("greet", {}, r"give name \(given: none\)"),
         (
             "only",
@@ -145,9 +144,7 @@ def test_doubled_braces_in_a_phrase_become_single_braces() -> None:
         ),
     ],
 )
-def test_the_error_about_an_impossible_intent_says_why(
-    intent: str, parameters: dict[str, object], message: str
-) -> None:
+def test_the_error_says_why_no_phrase_can_be_chosen(intent: str, parameters: dict[str, object], message: str) -> None:
     found = PhraseBook({"greet": {"en": ["Hi {name}!"]}, "only": {"fr": ["Oui."]}}, language="de-AT")
     with pytest.raises(RuleError, match=f"(?s){message}"):
         found.choose(intent, parameters, random.Random())
@@ -197,7 +194,7 @@ def test_errors_name_the_file_and_the_line(tmp_path: Path, text: str, line: int,
         book(tmp_path, BASE, text)
 
 
-def test_a_file_with_endless_nesting_is_refused(tmp_path: Path) -> None:
+def test_a_file_with_very_deep_nesting_is_refused(tmp_path: Path) -> None:
     with pytest.raises(DeclarationError, match=r"phrases0.yaml"):
         book(tmp_path, "a: " + "[" * 100_000)
 
@@ -228,6 +225,6 @@ def test_the_error_names_a_file_that_cannot_be_read(tmp_path: Path) -> None:
         ("so {it}", "chess", "so chess"),
     ],
 )
-def test_a_phrase_that_begins_with_a_parameter_begins_with_a_capital(template: str, value: str, text: str) -> None:
+def test_a_lower_case_value_at_the_beginning_of_a_phrase_gets_a_capital(template: str, value: str, text: str) -> None:
     book = PhraseBook({"x": {"en": [template]}})
     assert book.choose("x", {"it": value}, random.Random(1)).text == text

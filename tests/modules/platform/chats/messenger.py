@@ -42,7 +42,10 @@ async def greet(ctx: rs.RuleContext) -> None:
 
 
 class Post:
-    """A stand-in for a messenger. Each use raises the next error in `failures`, until the list is empty."""
+    """A stand-in for a messenger.
+
+    Each call of `send`, `fetch` or `show_work` raises the next error in `failures`, until the list is empty.
+    """
 
     longest = 100
     rate = 1000.0

@@ -1,4 +1,7 @@
-"""Laws of corrections. The quality set ``changes_rows`` measures how many wordings are understood."""
+"""Properties of every correction, such as "Leipzig, not Leeds".
+
+The quality set ``changes_rows`` measures how many wordings are understood.
+"""
 
 from __future__ import annotations
 
@@ -65,14 +68,14 @@ def test_a_value_that_was_denied_is_never_stored(topic: str) -> None:
             assert "rostock" not in [value.lower() for fact in found.facts if not fact.gone for value in fact.values]
 
 
-def test_a_wrong_value_of_two_facts_is_corrected_only_in_the_fact_mentioned_last() -> None:
+def test_if_two_facts_share_the_wrong_value_only_the_fact_mentioned_last_changes() -> None:
     both = {"home": ("Leeds",), "birthplace": ("Leeds",)}
     assert after("Hull, not Leeds", both) == {}
     assert after("Hull, not Leeds", both, Talk().mentioning("birthplace", ("Leeds",))) == {"birthplace": ("Hull",)}
     assert after("I was born in Hull, not Leeds", both) == {"birthplace": ("Hull",)}
 
 
-def test_a_correction_without_the_wrong_value_changes_the_only_fact_of_its_kind() -> None:
+def test_a_correction_that_names_only_the_new_value_changes_the_only_fact_of_that_kind() -> None:
     two = {"home": ("Leeds",), "origin": ("Ghana",), "age": ("15",)}
     assert after("no, York", two) == {}
     assert after("no, 16", two) == {"age": ("16",)}
@@ -80,7 +83,7 @@ def test_a_correction_without_the_wrong_value_changes_the_only_fact_of_its_kind(
     assert after("no, York", ADA, asking) == {}
 
 
-def test_a_relative_of_a_relative_is_not_taken_for_the_users() -> None:
+def test_a_relative_of_a_relative_is_not_taken_for_a_relative_of_the_user() -> None:
     assert after("Nora is my brother's wife, not my sister") == {"sister": ()}
     assert after("nora is my brothers wife not my sister") == {"sister": ()}
 

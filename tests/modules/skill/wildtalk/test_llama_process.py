@@ -1,4 +1,4 @@
-"""The process of a model, with other programs in place of llama.cpp."""
+"""The operating-system process that runs a language model. The tests run small programs in place of llama.cpp."""
 
 import os
 import subprocess

@@ -144,9 +144,9 @@ class PhraseBook:
     ) -> Phrase:
         """Choose a phrase at random, and fill in its parameters.
 
-        A phrase is eligible if all its parameters have values; None counts as missing. A phrase that begins with a
-        parameter gets a capital letter. The template `last`, which was used the last time, is not chosen again if
-        another template is eligible.
+        A phrase is eligible if all its parameters have values; None counts as missing. If a phrase begins with a
+        parameter, its first word gets a capital letter, unless the word has one already, like *eBay*. The template
+        `last`, which was used the last time, is not chosen again if another template is eligible.
 
         Raises:
             RuleError: There is no such intent or language, or each phrase lacks a parameter.
@@ -156,7 +156,8 @@ class PhraseBook:
         eligible = [template for template in templates if template.parameters <= given.keys()]
         if not eligible:
             needed = min((template.parameters - given.keys() for template in templates), key=len)
-            hints = "".join(nearest(name, sorted(given.keys())) for name in sorted(needed))
+            known = {name for template in templates for name in template.parameters}
+            hints = "".join(nearest(name, sorted(needed)) for name in sorted(given.keys() - known))
             raise RuleError(
                 f"each phrase for the intent {intent!r} lacks a parameter; give {', '.join(sorted(needed))} "
                 f"(given: {', '.join(given) or 'none'}{hints}), or add a phrase that needs none"
