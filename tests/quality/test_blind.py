@@ -24,7 +24,7 @@ FLOORS = {
     ("facts, tricky", "nothing wrong"): 0.94,
     ("feelings", "right"): 0.92,
     ("followups", "right"): 0.53,
-    ("small talk", "taken up"): 0.74,  # the agent drops doubtful replies, and some replies only show that it listens
+    ("small talk", "taken up"): 0.71,  # the agent drops doubtful replies, and plain replies name the topic less often
 }
 
 

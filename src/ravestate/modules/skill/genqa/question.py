@@ -109,6 +109,10 @@ def parsed(tree: Tree, entities: Sequence[Entity], kind: QuestionWord | None) ->
 
 def _alone(tree: Tree, root: Word, asked: list[Word]) -> list[Word]:
     """Return the words of the question inside a request: *can you tell me ...*, *do you know ...*, *name ...*."""
+    for child in tree.children(root, "ccomp", "advcl"):  # "what is the capital of Peru, my son asked"
+        quoted = tree.subtree(child)
+        if quoted[-1].index < root.index and quoted[0].tag in WH:
+            return quoted
     subject = next(iter(tree.children(root, "nsubj")), None)
     if subject is not None and subject.low not in THE_TWO:
         return asked

@@ -41,6 +41,8 @@ def named_in(reader: Utterance) -> Iterator[tuple[str, tuple[str, ...]]]:
     for before, word in itertools.pairwise(words):
         own = (before.low, word.low) == ("my", "name")  # "my name's Tom"
         me = before.lemma == "call" and before.tag != "VBD" and word.low == "me"
+        callers = reader.tree.children(before, "nsubj") if me else []
+        me = me and not any(one.low in ("he", "she") or one.pos == "PROPN" for one in callers)  # "he calls me Nana"
         topic = NAME if own or me else reader.relative(word.lemma)
         if not topic or (topic != NAME and _is_anothers(reader, before, word)):
             continue

@@ -34,6 +34,8 @@ KNOWN_LEAST = 4.0
 """The same for definite phrases, such as *the timer* and *my teeth*, which are mostly mentioned in passing."""
 NUMBER = 3.0
 """The information of a number beside a noun, in nats above `DULL`: *fourteen years*."""
+BEFORE = 0.5
+"""The share of its information that a phrase before *but* keeps: *the room is lovely, but the stairs are steep*."""
 LATER, SUBJECT, BESIDE, KNOWN = 1.2, 0.55, 0.55, 0.4
 """Factors for the information of a word. `LATER`: it is near the end, where the point often is. `SUBJECT`: it is the
 subject, which is often known. `BESIDE`: it is part of a place, a time or a subordinate clause. `KNOWN`: the user said it
@@ -44,7 +46,7 @@ _EMPTY = word_set(
     " someone somebody anyone anybody everyone everybody nobody guy guys people today tomorrow yesterday tonight morning"
     " weekend weekends afternoon evening night week weeks month months year years moment minute minutes hour hours monday tuesday wednesday"
     " thursday friday saturday sunday january february march april june july august september october november december"
-    " easter christmas row mate bro dude dear robot bot buddy pal goodnight bye goodbye hello hi name names rest"
+    " spring summer autumn winter easter christmas row mate bro dude dear robot bot buddy pal goodnight bye goodbye hello hi name names rest"
     " end part side place point case fact reason idea matter lol haha ok okay"
 )
 """Nouns that name nothing, or only a time."""
@@ -91,6 +93,7 @@ def highlight_in(seen: Analysis, words: Sequence[Word], known: str = "", *, aske
     inside = {word.index for word in words}
     named = [entity.text.lower().split() for entity in seen.entities if entity.label in _PLACES]
     places = {word.index for word in words if any(word.low in name for name in named)}
+    turn = max((word.index for word in words if word.low == "but"), default=-1)  # the point follows *but*
     found: list[Highlight] = []
     for place, noun in enumerate(words):
         if not _names(tree, noun, places) or not (asked or _is_asserted(tree, noun)):
@@ -102,7 +105,7 @@ def highlight_in(seen: Analysis, words: Sequence[Word], known: str = "", *, aske
                 continue
             told = _information(lexicon, phrase, before)
             told *= 1 + (LATER - 1) * place / len(words)
-            told *= _weight(tree, noun)
+            told *= _weight(tree, noun) * (BEFORE if noun.index < turn else 1.0)
             text = _written(lexicon, echo(tree, phrase))
             plainly = phrase[0].low in _DEFINITE and not any(word.pos in ("ADJ", "NUM", "ADP") for word in phrase)
             if told >= (KNOWN_LEAST if plainly else LEAST) and text:

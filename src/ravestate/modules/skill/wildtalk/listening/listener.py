@@ -170,7 +170,7 @@ class Listener:
 
     def wish(self, heard: Heard, state: State) -> Wish | None:
         """Return the performance that the user asks for; None if they ask for none."""
-        if heard.seen is None:
+        if heard.seen is None or is_leaving(heard.text):  # "I'll sing her a song. Goodbye!"
             return None
         closing = heard.seen.closing
         acts = [act for act in heard.seen.acts.values() if act.name in SHOWS and act.score >= ASKED]
