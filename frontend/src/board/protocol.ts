@@ -406,7 +406,7 @@ export interface ActivationState {
   lacks: string[];
   /** The rules that it waits for, and by how many nats each is ahead (0 for a taken slot or a tie). */
   waits_for: [string, number][];
-  /** The latest time at which the activation runs or gives a spike up (seconds); None if there is none. */
+  /** The time (seconds) by which the activation runs or gives a spike up; None if nothing limits the wait. */
   until: number | null;
 }
 

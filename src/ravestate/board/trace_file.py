@@ -10,6 +10,7 @@ import os
 import pickle
 import re
 import secrets
+import signal
 import subprocess
 import sys
 from collections import OrderedDict
@@ -149,8 +150,10 @@ def read_apart(data: bytes) -> Recording:
         done = subprocess.run(command, input=data, capture_output=True, env=paths, timeout=LONGEST, check=False)
     except subprocess.TimeoutExpired:
         raise ValueError(f"reading it takes more than {LONGEST} s") from None
-    if done.returncode < 0:  # a signal: pydantic's core aborts if it gets no memory
+    if done.returncode in (-signal.SIGABRT, -signal.SIGKILL):  # pydantic's core aborts if it gets no memory
         raise ValueError(TOO_MUCH)
+    if done.returncode < 0:
+        raise ValueError(f"reading it was stopped by signal {-done.returncode}")
     if done.returncode:
         raise ValueError(done.stderr.decode("utf-8", "replace").strip() or "reading it fails")
     chunks = io.BytesIO(done.stdout)
@@ -185,16 +188,16 @@ def _main() -> int:
     _limit_memory()
     try:
         read = trace_file.read_trace(sys.stdin.buffer.read())
+        pickle.dump((read.title, read.description, read.whole), sys.stdout.buffer)
+        for start in range(0, len(read.records), CHUNK):
+            pickle.dump(read.records[start : start + CHUNK], sys.stdout.buffer)
+        pickle.dump((), sys.stdout.buffer)
     except ValueError as error:
         sys.stderr.write(str(error))
         return 1
     except MemoryError:
         sys.stderr.write(TOO_MUCH)
         return 1
-    pickle.dump((read.title, read.description, read.whole), sys.stdout.buffer)
-    for start in range(0, len(read.records), CHUNK):
-        pickle.dump(read.records[start : start + CHUNK], sys.stdout.buffer)
-    pickle.dump((), sys.stdout.buffer)
     return 0
 
 

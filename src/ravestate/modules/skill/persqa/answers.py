@@ -30,6 +30,8 @@ _PREPOSITIONS = re.compile(
 _LISTED = re.compile(r"\s*(?:[,;/&+]|\band\b|\bor\b|\bas well as\b|\bplus\b)\s*", re.IGNORECASE)
 _END = re.compile(rf"[.;:!?…\n()\"]|\s(?:{_any('closers')}|(?:and )?(?:what about|how about|and) you)\b", re.IGNORECASE)
 """The end of an answer."""
+LONG = 400
+"""The maximum number of characters of an answer that are read: the patterns are slow for long texts."""
 _ONE = (re.compile(","), re.compile(r",| and\b"))
 _HEDGES = re.compile(
     r"^(?:(?:a bit of|a little|some|lots of|also|sometimes|mostly|maybe|just|both|to|then) )+", re.IGNORECASE
@@ -60,6 +62,7 @@ def answer(text: str, topic: str, seen: nlp.Analysis) -> list[Fact]:
         *chess and football* gives ``Fact("hobby", ("chess", "football"))``; *what?* gives nothing.
     """
     about = TOPICS[topic]
+    text = " ".join(text[:LONG].split())
     said = re.sub(r"^(?:i am|we are|i)\s+", "", _OPENERS.sub("", text), flags=re.IGNORECASE)
     rest = _END.split(f" {_PREPOSITIONS.sub('', said)}", maxsplit=1)[0].strip(" ,-'")
     where = _WHERE.search(rest) if about.kind in _PLACED else None
@@ -80,10 +83,11 @@ def answer(text: str, topic: str, seen: nlp.Analysis) -> list[Fact]:
 
 
 def picked(topic: str, seen: nlp.Analysis) -> list[Fact]:
-    """Return the last number, or the only name, in a loose answer: *older than you think: 83*, *same as ever, Ulm*."""
+    """Return the only number, or the only name, in a loose answer: *older than you think: 83*, *same as ever, Ulm*."""
     about, words = TOPICS[topic], seen.tree.words
     if about.kind == "number":
-        found = [word.text for word in words if word.pos == "NUM"][-1:]
+        found = [word.text for word in words if word.pos == "NUM"]
+        found = found if len(found) == 1 else []
     else:
         names = [word for word in words if word.pos == "PROPN"]
         runs = [word for word in names if seen.tree.before(word) not in names]

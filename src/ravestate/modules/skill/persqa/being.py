@@ -34,16 +34,21 @@ def being_in(reader: Utterance, said: nlp.Statement) -> Iterator[Link]:
     elif object.head in WORDS["terms"] and " of " in text:  # "I'm in my second year of law"
         yield Link("subject", object, sure=False, value=text.partition(" of ")[2])
     elif object.preposition in ("at", "in") and object.head in TOPICS["university"].nouns:
-        places = (phrase for phrase in said.phrases if phrase.preposition == "in" and phrase.names)
+        high = object.head != "school"  # a school in a city is no university
+        places = (phrase for phrase in said.phrases if high and phrase.preposition == "in" and phrase.names)
         yield Link("university", object if object.names or object.owner else next(places, object))
     elif object.preposition in ("at", "with") and (reader.known.get("employer") or reader.asked == "employer"):
         yield Link("employer", object, sure=False)
-    elif found := re.fullmatch(rf"(?:\w+ )?(?:{'|'.join(WORDS['keen'])}) (\w+?)e?r", text.lower()):
+    elif found := re.fullmatch(rf"(?:\w+ )?(?:{'|'.join(WORDS['keen'])}) (\w+?)er", text.lower()):
         yield Link("hobby", object, value=f"{found[1]}ing")  # "I'm a keen gardener"
     elif object.head == "student":
         yield Link("occupation", object, value="student")
         yield Link("subject", object.owner or object, sure=False, value="" if object.owner else text.rpartition(" ")[0])
-        yield from (Link("origin", phrase) for phrase in said.phrases if phrase.preposition == "from")
+        yield from (Link("university", phrase) for phrase in said.phrases if phrase.preposition == "at")
+        for phrase in said.phrases:
+            if phrase.preposition == "from":  # "a student from Lyon, a student from Leiden University"
+                school = any(word.lower() in TOPICS["university"].nouns for word in phrase.text.split())
+                yield Link("university" if school else "origin", phrase)
     elif not object.preposition and ((object.names and not object.head) or _is_capital(reader, object)):
         yield Link(NAME, object, sure=reader.asked == NAME or _is_capital(reader, object))
         yield from beside_name(reader, said)
@@ -67,7 +72,10 @@ def _country(text: str, whole: str) -> str:
     The parser may part *South* from *Korean*, so the utterance as a `whole` counts for words of several parts.
     """
     words = " ".join(word for word in re.split(r"[\s-]", text.lower()) if word not in NATIONS_BESIDE)
-    longer = (name for name in NATIONS if name.endswith(f" {words}") and name in whole.lower())
+    own = r"\b(?:am|'m|im|a|an|half|originally) "
+    longer = (
+        name for name in NATIONS if name.endswith(f" {words}") and re.search(f"{own}{name}\\b", whole, re.IGNORECASE)
+    )
     return NATIONS.get(next(longer, words)) or NATIONS.get(words.removesuffix("s"), "")
 
 

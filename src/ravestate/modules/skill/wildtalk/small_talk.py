@@ -78,7 +78,8 @@ def heard_in(ctx: rs.RuleContext, text: str, seen: nlp.Analysis | None) -> Heard
 def may_suit(seen: nlp.Analysis | None) -> bool:
     """Return whether `comfort` may have an answer to the utterance; the rule looks closer, in a thread.
 
-    This is a predicate, so it runs on the event loop. It compares the utterance with no examples, which takes some 20 ms.
+    This is a predicate, so it runs on the event loop. A comparison with the examples would take some 20 ms there, so
+    `comfort` makes it in a thread; the rule therefore starts for most statements.
     Until the examples are learnt, even the other checks would wait for them. So until then, every utterance may suit.
     """
     if seen is None or not learnt.is_set():
@@ -109,7 +110,7 @@ def claims(heard: Heard, state: State) -> bool:
 
 
 def may_be_known(seen: nlp.Analysis) -> bool:
-    """Return whether the listening skill may have a reply to these words or almost the same. `is_known` looks closer.
+    """Return whether an utterance is a statement to which the listening skill may have a reply. `is_known` looks closer.
 
     Other skills answer questions, hello and goodbye. A short *yes* or *no* belongs to the module that asked.
     """

@@ -46,8 +46,11 @@ def is_crisis(text: str) -> bool:
     return _patterns()[1].search(plain(text)) is not None
 
 
-_LIVELY = re.compile(r"\b(?:so|pretty|quite|totally|really|half) dead\b|\bdead (?:here|tonight|end|line|tired|battery|phone|easy|good|slow|quiet|funny)\b"
-                     r"|\bnobody (?:has |is )?(?:died|dead)\b|\bkill(?:ing)? (?:some |the )?time\b")  # fmt: skip
+_LIVELY = re.compile(
+    r"\bit (?:is|was) so dead\b|\b(?:place|town|party|phone|battery|street|bar|shop|line) (?:is|was) (?:\w+ )?dead\b"
+    r"|\bdead (?:end|line|battery|phone|easy|tired|slow|quiet)\b|\bi am (?:half |so )?dead\b"
+    r"|\bnobody (?:has )?died\b(?! but| except| apart)|\bkill(?:ing)? (?:some |the )?time\b"
+)
 """Phrases in which a grave word is harmless: *it's so dead here*."""
 
 

@@ -24,6 +24,7 @@ from ravestate.modules.meta.nlp.statement import Statement
 from .asked import WORDING, Asked, asked_in, options_between
 from .asking import FEW_WORDS, SHORT, asking_sentence, kind_of
 from .bank import CLOSE, Found
+from .echo import words_of
 from .following import follow_up_in, rest_of
 from .grave import is_grave, is_medical
 from .lookup import ALIKE, is_dark, near_in
@@ -75,6 +76,9 @@ _ADVISED = re.compile(
     r"\b(?:should|shall|can|could|must|do) (?:i|we)\b|\bnormal\b|\bdangerous\b|\bdo you think\b|\bwhat helps\b"
 )
 """Words that ask for advice."""
+_HELPERS = word_set("doctor hospital ambulance nurse medicine help emergency clinic")
+_REFERRING = word_set("he him his she her it they them this")
+"""Words that may mean the patient or the illness of the sentence before."""
 _SAD = SORROWS | {"tiredness"}
 _JUDGING = frozenset(("think", "feel", "know"))
 """Verbs of questions such as *what do you think about jazz*."""
@@ -268,11 +272,16 @@ def _tone(seen: Analysis, moves: Sequence[str], feeling: Moment | None) -> str:
 
 
 def _is_medical(phrases: Material, seen: Analysis, state: State, asking: str) -> bool:
-    """Return whether the user wants advice about an illness or injury, now or after such a question."""
-    wanted = bool(asking) and (seen.advised or _ADVISED.search(plain(asking)) is not None)
+    """Return whether the user wants advice about an illness or injury, perhaps one that they mentioned just before."""
+    if not asking or not (seen.advised or _ADVISED.search(plain(asking))):
+        return False
+    words = words_of(seen.tree, asking)
+    nouns = {word.lemma.lower() for word in words if word.pos in ("NOUN", "PROPN")} - _HELPERS
+    if nouns and {word.low for word in words}.isdisjoint(_REFERRING):
+        return is_medical(seen.normal.text)  # "what should I cook tonight?" after a fever
     last = state.said[-1] if state.said else ""
-    lately = any(line.text == last for lines in phrases.plain["medical"].groups.values() for line in lines)
-    return wanted and (lately or is_medical(f"{state.before} {seen.normal.text}"))
+    lately = any(last.endswith(line.text) for lines in phrases.plain["medical"].groups.values() for line in lines)
+    return lately or is_medical(f"{state.before} {seen.normal.text}")
 
 
 def _leaves(seen: Analysis) -> bool:

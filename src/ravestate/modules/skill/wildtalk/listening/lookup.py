@@ -77,7 +77,7 @@ def near_in(
     ranked: list[Found] = []
     found = phrases.bank.similar(texts, seen.text, roughly=roughly)
     if being is not None and (meant := spelled_out(seen, being)):  # "he is in hospital" after "my dad"
-        before = set(phrases.bank.thread(state.moment or state.thread))  # the being comes from there
+        before = {*phrases.bank.thread(state.moment or state.thread), *(one.moment.name for one in found)}
         found += [one for one in phrases.bank.similar([meant], meant, roughly=roughly) if one.moment.name not in before]
     for one in found:
         tone = one.moment.tone

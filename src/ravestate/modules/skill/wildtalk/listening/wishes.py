@@ -15,6 +15,8 @@ from .state import State
 
 LONGEST = 20
 """The maximum number of words of a sentence that asks for a performance."""
+MOST = 400
+"""The maximum number of characters that are read: the patterns take time that grows with the square of the length."""
 BARE = 4
 """The maximum number of words of a request without a verb: *a dino joke please*."""
 LATELY = 3
@@ -91,7 +93,7 @@ def wish_in(shows: Mapping[str, Any], seen: Analysis, state: State, acts: Sequen
         state: The state of the conversation, for *another one*, and for an offer of the agent.
         acts: The performances that the classifier of acts finds in the utterance.
     """
-    low = seen.text.lower()
+    low = seen.text.lower()[:MOST]
     if _GUESSER.search(low) or _HOLDER.search(low):
         return Wish("animal" if _GUESSER.search(low) else "holder")
     asked = seen.sentences if seen.closing is None or not seen.closing.remarks else (seen.closing.text,)
