@@ -62,6 +62,8 @@ class Plans:
         find_conflict_sets(signals, causes)
         find_halves(signals, causes)
 
+        self.spare: list[Any] = []
+        """Parts of engines (``engine/parts.py``) that no engine uses at present."""
         self.modules = tuple(modules)
         self.declared = tuple(declared)
         self.settings = settings

@@ -2,10 +2,9 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Mapping
 from typing import TYPE_CHECKING, Any, Literal
 
-from ravestate.declare.module import Module
 from ravestate.declare.rule import Rule
 from ravestate.errors import DeclarationError, DeclarationErrors, nearest
 from ravestate.policy.model import ClauseView, RulePlan
@@ -26,17 +25,6 @@ class Policy(Plans):
         signals: Qualified name → signal, including the signals of slots.
         slots: Qualified name → slot.
     """
-
-    def __init__(
-        self,
-        modules: Sequence[Module],
-        declared: Sequence[Rule[Any, Any]],
-        settings: Mapping[str, Any],
-        faults: Sequence[str] = (),
-    ) -> None:
-        super().__init__(modules, declared, settings, faults)
-        self.spare: list[Any] = []
-        """Parts of engines (``engine/parts.py``) that no engine uses at present."""
 
     def rule_plan(self, rule: str | Rule[Any, Any]) -> RulePlan:
         """Return the record of a rule; `rule` may be its qualified name.

@@ -3,7 +3,6 @@
 import sqlite3
 from collections.abc import Iterator
 from pathlib import Path
-from typing import Any
 
 import pytest
 
@@ -24,20 +23,6 @@ def collection(collection_file: Path) -> Iterator[Answerer]:
     answerer.load()
     yield answerer
     answerer.close()
-
-
-@pytest.fixture
-def connections(monkeypatch: pytest.MonkeyPatch) -> list[sqlite3.Connection]:
-    """The connections to SQLite files that the test has opened so far, oldest first."""
-    opened: list[sqlite3.Connection] = []
-    connect = sqlite3.connect
-
-    def note(*arguments: Any, **options: Any) -> sqlite3.Connection:
-        opened.append(connect(*arguments, **options))
-        return opened[-1]
-
-    monkeypatch.setattr(sqlite3, "connect", note)
-    return opened
 
 
 @pytest.fixture

@@ -1,4 +1,4 @@
-"""Access to the files that the tests open."""
+"""Access to the SQLite files that the tests of modules open."""
 
 import sqlite3
 from typing import Any
