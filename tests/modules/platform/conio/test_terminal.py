@@ -94,6 +94,17 @@ def test_lines_can_be_typed_edited_recalled_and_pasted() -> None:
     play(scene)
 
 
+def test_a_colour_code_in_the_input_is_ignored(caplog: pytest.LogCaptureFixture) -> None:
+    """prompt_toolkit takes such a code for a movement of the mouse, and fails because the coordinates are missing."""
+
+    async def scene(terminal: Terminal, keys: PipeInput, paper: Paper) -> None:
+        keys.send_text("red \x1b[31mpaint\r")
+        assert await asyncio.wait_for(terminal.read(), 10) == "red paint"
+
+    play(scene)
+    assert not caplog.records
+
+
 def test_each_key_calls_on_key_except_the_key_that_sends_the_line() -> None:
     count = 0
 

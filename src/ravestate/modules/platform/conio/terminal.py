@@ -141,6 +141,10 @@ class Terminal:
         def leave_out(event: KeyPressEvent) -> None:
             """Ignore the key, because the line is full."""
 
+        @keys.add(Keys.Vt100MouseEvent, eager=True)  # prompt_toolkit fails at a pasted colour code that looks like one
+        def ignore(event: KeyPressEvent) -> None:
+            """Ignore the mouse."""
+
         return keys
 
     def _tell(self, _: object) -> None:
