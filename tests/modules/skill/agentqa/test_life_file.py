@@ -78,6 +78,7 @@ TOPICS = [
     "languages_spoken",
     "clothes",
     "handwriting",
+    "games",
     "cooks",
     "driving",
     "schooling",

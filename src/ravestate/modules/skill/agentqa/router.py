@@ -121,6 +121,13 @@ def _readings(sentence: str, *, question: bool) -> Iterator[str]:
 
     A question may be indirect, polite, or without its verb: *I wonder how old you are*, *may I ask your name*, *any hobbies*.
     """
+    whole = _in_full(_POLITE.sub("tell me", _OPENERS.sub("", plain(sentence))))
+    turned = question and whole != plain(sentence)
+    if turned and plain(sentence).startswith(
+        "you "
+    ):  # "you like tea" resembles "what do you like" more than "do you like tea"
+        yield whole
+        return
     yield sentence
     _, comma, rest = sentence.rpartition(", ")
     if comma and len(rest.split()) > 1:
@@ -129,10 +136,7 @@ def _readings(sentence: str, *, question: bool) -> Iterator[str]:
         return
     if (found := _QUESTION_WORD.search(sentence)) is not None:
         yield sentence[found.start() :]
-    said = _OPENERS.sub("", plain(sentence))
-    asked = _POLITE.sub("tell me", said)
-    whole = _in_full(asked)
-    if whole != plain(sentence):
+    if turned:
         yield whole
 
 
