@@ -54,6 +54,8 @@ CALM = ("fact", "why", "about_you")
 MANY = {"two": 2, "three": 3, "four": 4, "five": 5}
 _SAY = re.compile(r"\b(?:say|repeat after me)\b[,:]? *(?:the words? |it |something |with me )?[\"']?([\w' ]{1,30}?)[\"']?"
                   r"(?: please| to .*| for .*| just .*|[.!?,].*)?$", re.IGNORECASE)  # fmt: skip
+_TIMES_SAID = re.compile(r" (?:(\w+) times|twice)\b", re.IGNORECASE)
+"""The number of times that the agent is to say words; at most five times."""
 _CUT = ("VERB", "AUX", "ADP", "SCONJ", "PRON", "PUNCT", "INTJ")
 _LIKED = word_set("better nicer worse more rather prettier")
 """Comparatives of opinions."""
@@ -283,12 +285,15 @@ def _until(words: Sequence[Word], ends: Sequence[str]) -> list[Word]:
 
 
 def _word(seen: Analysis) -> str:
-    """Return the words that the agent is asked to say."""
-    match = _SAY.search(seen.normal.text)
-    text = match[1].strip() if match else ""
-    own = {word.lower() for word in text.split()} & {"my", "me", "your", "that", "it", "this"}
+    """Return the words that the agent is asked to say, as often as the user wants: *say "boo" three times*."""
+    text = seen.normal.text
+    times = _TIMES_SAID.search(text)
+    match = _SAY.search(text[: times.start()] if times else text)
+    said = match[1].strip() if match else ""
+    own = {word.lower() for word in said.split()} & {"my", "me", "your", "that", "it", "this"}
     rude = "insult" in seen.acts or SORROWS & set(seen.feelings)
-    return "" if own or rude or len(text.split()) > 4 else text
+    many = MANY.get(times[1].lower(), 2 if times[0].strip().lower() == "twice" else MANY["five"]) if times else 1
+    return "" if own or rude or not said or len(said.split()) > 4 else ", ".join([said] * many)
 
 
 def _picked(phrases: Material, words: Sequence[Word], turn: int) -> str:

@@ -18,7 +18,7 @@ from ravestate.language.matcher import Match
 from ravestate.language.nonsense import is_nonsense
 from ravestate.language.normal import plain
 from ravestate.modules.meta.nlp.analysis import ADVICE, Analysis
-from ravestate.modules.meta.nlp.question_word import QuestionWord
+from ravestate.modules.meta.nlp.question_word import QUESTION_WORDS, QuestionWord
 from ravestate.modules.meta.nlp.statement import Statement
 
 from .asked import WORDING, Asked, asked_in, options_between
@@ -223,7 +223,7 @@ def _understand(found: Hearing, phrases: Material, heard: Heard, seen: Analysis,
         "long": size >= LONG,
         "short": size <= SHORT,
         "teased": "insult" in seen.acts and is_playful(seen.text),
-        "leaving": not asking and (is_leaving(seen.text) or _leaves(seen)),
+        "leaving": (not asking or _echoes(asking)) and (is_leaving(seen.text) or _leaves(seen)),
         "verb": verb and seen.question is None,
         "acting": bool(seen.acts.keys() - {"contradiction"}),
         "felt": feeling is not None,
@@ -288,6 +288,12 @@ def _leaves(seen: Analysis) -> bool:
     """Return whether an utterance ends with a farewell: *that helped a bit. she's waking up, gotta run*."""
     match = seen.acts.get("farewell")
     return match is not None and match.score >= MEANT and plain(seen.text).endswith(f" {plain(match.text)}")
+
+
+def _echoes(asking: str) -> bool:
+    """Return whether a question only repeats words in surprise: *that late?*"""
+    words = plain(asking).split()
+    return len(words) <= BARE and QUESTION_WORDS.keys().isdisjoint(words)
 
 
 def likely(phrases: Material, seen: Analysis) -> tuple[str, ...]:

@@ -70,6 +70,8 @@ def near_in(
     if len(seen.tree.words) <= WHOLE and not (asking and len(seen.sentences) > 1):  # "haha! do dogs dream" asks
         texts.append(seen.text)
     own = tone_of(seen.text)
+    if state.tone == "sad" and own in ("glad", "funny") and (feeling is None or feeling.tone != "glad"):
+        own = ""  # a widow's memory: "we were married for forty years"
     mood = own if own else state.tone if state.tone in DARK or feeling is None else feeling.tone
     bare = asking and not about(phrases, seen.tree, words_of(seen.tree, asking))  # "how do I start?"
     kind, persons = kind_of(asking) if asking else "", persons_in(seen.normal.text)
