@@ -58,6 +58,8 @@ ASKED = 0.8
 """The minimum confidence in a request at which the agent follows it."""
 FEW = 0.75
 """The minimum confidence in the act or the feeling of a short sentence."""
+PARTING = 0.66
+"""The minimum confidence in a farewell as the next move at which the utterance counts as a farewell."""
 SHORTLY = 7
 """The maximum number of words of a statement that is repeated as a whole."""
 LONG = 12
@@ -223,7 +225,7 @@ def _understand(found: Hearing, phrases: Material, heard: Heard, seen: Analysis,
         "long": size >= LONG,
         "short": size <= SHORT,
         "teased": "insult" in seen.acts and is_playful(seen.text),
-        "leaving": (not asking or _echoes(asking)) and (is_leaving(seen.text) or _leaves(seen)),
+        "leaving": (not asking or _echoes(asking)) and (is_leaving(seen.text) or _leaves(seen) or _parts(seen, size)),
         "verb": verb and seen.question is None,
         "acting": bool(seen.acts.keys() - {"contradiction"}),
         "felt": feeling is not None,
@@ -288,6 +290,11 @@ def _leaves(seen: Analysis) -> bool:
     """Return whether an utterance ends with a farewell: *that helped a bit. she's waking up, gotta run*."""
     match = seen.acts.get("farewell")
     return match is not None and match.score >= MEANT and plain(seen.text).endswith(f" {plain(match.text)}")
+
+
+def _parts(seen: Analysis, size: int) -> bool:
+    """Return whether the next move after a short utterance is very likely a farewell: *cheers, gotta get the bus*."""
+    return seen.move is not None and seen.move.name == "farewell" and seen.move.score >= PARTING and size <= LONG
 
 
 def _echoes(asking: str) -> bool:

@@ -107,7 +107,8 @@ def turned(tree: Tree, words: Sequence[Word]) -> str:
     """
     found = ""
     for word in words:
-        text = TURNED.get(word.low, word.text)
+        noun = word.low == "am" and word.pos not in ("AUX", "VERB")  # "3 am"
+        text = word.text if noun else TURNED.get(word.low, word.text)
         found += text if not found or text.startswith(("'", "’")) or text == "," else f" {text}"
     return found if len(found) <= LONGEST and _REPEATABLE.fullmatch(found) else ""
 
