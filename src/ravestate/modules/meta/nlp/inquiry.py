@@ -25,6 +25,7 @@ _MINDING = word_set("remember recall understand see hear")
 """Verbs whose requests ask nothing: *remember who you are*."""
 _SETTLING = word_set("decide check figure work realise realize notice imagine discover determine")
 """Verbs before an indirect question, if the clause asks by itself: *have you decided where*, but not *I decided where*."""
+_SUBJECTIVE = word_set("he she they we i")
 _THEM = word_set("him her them")
 _HINTS = word_set("idea clue reason sure")
 """Words before an indirect question that need no verb: *any clue who*, *are you sure when*."""
@@ -81,7 +82,7 @@ def _kind(tree: Tree, words: Sequence[Word], clauses: Sequence[Clause]) -> Quest
         led = ("ADP", "SCONJ", "ADV") if asked else ("ADP", "SCONJ")
         beside = len(part) > 1 and part[0].pos in led and part[0].low not in ("like", *QUESTION_WORDS)
         rest = part[beside:]
-        kind = kind_at(rest, 0)
+        kind = kind_at(part, int(beside))
         sure = likely and part == parts[-1] and rest[0].low not in ("when", "where")
         exclaims = tree.text[part[-1].end :].startswith("!")
         called = len(part) == 1 and part != parts[-1] and not asked  # as in "why, that is lovely!"
@@ -136,9 +137,11 @@ def _lacks_auxiliary(words: Sequence[Word], clauses: Sequence[Clause]) -> bool:
         return rest[-1].pos in ("ADJ", "ADV")
     if first.low != "you" or not rest:
         return False
-    verbs = [word for word in rest if word.pos in VERBAL]
+    verbs = [word for word in rest if word.pos in VERBAL and word.low not in ("ok", "okay")]
     if not verbs:
-        return rest[-1].pos in ("ADJ", "ADV") and not _NO_PREDICATE & {word.low for word in rest}
+        return (rest[-1].pos in ("ADJ", "ADV") or rest[-1].low in ("ok", "okay")) and not _NO_PREDICATE & {
+            word.low for word in rest
+        }
     return verbs[0].tag == "VBG" and all(word.pos in ("ADV", "PRON") for word in words[: words.index(verbs[0])])
 
 
@@ -189,7 +192,8 @@ def _opens_question(
         return True
     clause = next((clause for clause in clauses if first.index in [word.index for word in clause.own]), None)
     subordinate = ("csubj", "relcl") if second in AUXILIARIES else ("advcl", "csubj", "relcl")
-    if clause is not None and not clause.inverted and clause.verb.dep in subordinate and not apart:
+    turned = second in AUXILIARIES and part[2:] and part[2].low in _SUBJECTIVE  # "the man over there, who is he"
+    if clause is not None and not (clause.inverted or turned or apart) and clause.verb.dep in subordinate:
         return False
     if any(clause.inverted for clause in clauses) or second in AUXILIARIES:
         return True

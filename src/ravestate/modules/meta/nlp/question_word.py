@@ -39,6 +39,7 @@ QUESTION_WORDS = {
     "whom": QuestionWord.PERSON,
     "whose": QuestionWord.PERSON,
     "where": QuestionWord.PLACE,
+    "whereabouts": QuestionWord.PLACE,
     "when": QuestionWord.TIME,
     "why": QuestionWord.REASON,
     "how": QuestionWord.FORM,
@@ -59,9 +60,16 @@ _MEASURES = word_set(
 )
 _CLASSES = {
     QuestionWord.TIME: word_set("time day date hour week month year weekday century decade evening night weekend"),
-    QuestionWord.PLACE: word_set("place city town village country state street region county continent district"),
-    QuestionWord.PERSON: word_set("person people man woman boy girl guy child lady kid"),
+    QuestionWord.PLACE: word_set(
+        "place city town village country state street region county continent district room building neighbourhood location spot"
+    ),
+    QuestionWord.PERSON: word_set(
+        "person people man woman boy girl guy child lady kid friend brother sister cousin uncle aunt colleague neighbour neighbor "
+        "teacher doctor nurse author writer poet actor actress singer player composer artist painter scientist inventor student "
+        "president minister mayor king queen bloke chap relative classmate"
+    ),
     QuestionWord.REASON: word_set("reason"),
+    QuestionWord.AMOUNT: word_set("percentage percent proportion"),
 }
 _CLASS_OF = {noun: kind for kind, nouns in _CLASSES.items() for noun in nouns}
 _FOUGHT_FOR = word_set(
@@ -93,6 +101,8 @@ def kind_at(words: Sequence[Word], index: int) -> QuestionWord | None:
         for other in rest:
             if other.pos in ("ADJ", "NUM"):
                 continue
+            if (words[index - 1].low if index else "", other.low) in (("in", "way"), ("by", "means")):
+                return QuestionWord.FORM
             if other.pos in ("NOUN", "PROPN", "VERB"):  # without punctuation, the tagger takes some nouns for verbs
                 kind = _CLASS_OF.get(other.lemma.lower(), kind)
             break
