@@ -216,6 +216,8 @@ def results() -> Iterable[Result]:
     yield _measured_triples("clean")
     yield _measured_triples("typed")
     yield _labels("yes and no", modules.yesno, labelled("answers"))
+    poles = [(text, label.split()[0]) for text, label in labelled("answers")]
+    yield _labels("... without strength", lambda text: modules.yesno(text).split()[0], poles)
     for style in ("clean", "typed"):
         yield _labels(f"questions, {style}", modules.questions, labelled("kinds", style))
     cases = labelled("about_agent")
