@@ -99,7 +99,8 @@ class Router:
         called = (self.life.name, *names)
         short = (sentence for sentence in heard(utterance, called) if len(sentence.split()) <= WORDS)
         for sentence in islice(short, SENTENCES):
-            for text in _readings(addressed(sentence, called), question=question):
+            asks = question and ("?" not in utterance or sentence.rstrip().endswith("?"))
+            for text in _readings(addressed(sentence, called), question=asks):
                 match self._matcher.ranked_all([text], most=2)[0]:
                     case [best, *_] if best.name and best.score >= LEAST:
                         return Match(best.name, plain(text), best.score, best.example, best.margin)

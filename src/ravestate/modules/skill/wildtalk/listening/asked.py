@@ -47,12 +47,14 @@ BY_MOVE = {"advice": "how_to", "opinion": "you_think"}
 """Move → the kind of a question, if the classifier finds no kind."""
 LEAST_WRAPPED = 4
 """The minimum number of words of a question that begins with *do you think*, including these words."""
+_FUTURE = word_set("will wo 'll going gonna would might ever still soon tomorrow")
+"""Words of a question about the future."""
 BRIEF = 4
 """The maximum number of words of a choice without a verb: *tea or coffee*."""
 CALM = ("fact", "why", "about_you")
 """Kinds that do not count if the user needs consolation, as in *but who takes me at 52*, *are you even listening*."""
 MANY = {"two": 2, "three": 3, "four": 4, "five": 5}
-_SAY = re.compile(r"\b(?:say|repeat after me)\b[,:]? *(?:the words? |it |something |with me )?[\"']?([\w' ]{1,30}?)[\"']?"
+_SAY = re.compile(r"\b(?:say|repeat(?: after me)?)\b[,:]? *(?:the words? |it |something |with me )?[\"']?([\w' ]{1,30}?)[\"']?"
                   r"(?: please| to .*| for .*| just .*|[.!?,].*)?$", re.IGNORECASE)  # fmt: skip
 _TIMES_SAID = re.compile(r" (?:(\w+) times|twice)\b", re.IGNORECASE)
 """The number of times that the agent is to say words; at most five times."""
@@ -145,8 +147,8 @@ def asked_in(
     if kind == "choose" and compared and words and words[0].low in QUESTION_WORDS:
         kind = "fact"  # "which is heavier, gold or lead?"
     plainly = asking and words and (asking.endswith("?") or words[0].low in {*QUESTION_WORDS, *AUXILIARIES})
-    if asking and wrapped and kind in ("", "about_you"):
-        kind = "predict"  # "do you think that they are angry?"
+    if asking and wrapped and kind in ("", "about_you", "predict"):  # "do you think that they will be angry?"
+        kind = "predict" if any(word.low in _FUTURE for word in words) else "you_think"
     if plainly and kind in ("", "fact") and _asks_agent(words):
         kind = "would_you" if words[0].low in ("would", "could") else "about_you"
     if plainly and not kind:

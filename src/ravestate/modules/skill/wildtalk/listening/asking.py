@@ -20,8 +20,30 @@ _AMAZED = re.compile(r"\b(?:can|could|would) you (?:imagine|believe)\b(?: (?:tha
 """The end of an astonished statement: *he ate it all, can you believe it?*"""
 
 
+ORDERS = frozenset(("tell_me", "ask_me", "write", "pick", "recommend", "how_to", "say_word"))
+"""Kinds of requests (asks.yaml). After another sentence, such a request is the point of the utterance."""
+ORDERED = 0.8
+"""The minimum confidence in such a request."""
+
+
 def asking_sentence(seen: Analysis) -> str:
-    """Return the sentence that asks something; empty if the utterance has none."""
+    """Return the sentence that asks something, or the request at the end; empty if the utterance has neither."""
+    return _question_in(seen) or _order_in(seen)
+
+
+def _order_in(seen: Analysis) -> str:
+    """Return the request at the end of an utterance: *I'm on a night shift. Tell me something interesting.*"""
+    if len(seen.sentences) < 2:
+        return ""
+    last = seen.sentences[-1]
+    return (
+        last
+        if any(one.text == last and one.score >= ORDERED for name, one in seen.asks.items() if name in ORDERS)
+        else ""
+    )
+
+
+def _question_in(seen: Analysis) -> str:
     if seen.question is None or not seen.sentences or _AMAZED.search(seen.sentences[-1]):
         return ""
     if is_news(seen.sentences[-1]) or is_cry(seen.text):

@@ -97,6 +97,8 @@ def is_astonished(seen: Analysis, sentence: str) -> bool:
     """Return whether a sentence is a statement about others with a question mark: *he says it relaxes them??*"""
     words = [word for word in words_of(seen.tree, sentence) if word.pos not in ("PUNCT", "INTJ", "CCONJ")]
     low = [word.low for word in words]
+    if low[-2:] == ["you", "know"] and len(low) > 4:  # "it's been a bad week, you know?"
+        return True
     if len(low) < 4 or low[0] in ASKING or not _ASKED.isdisjoint(low):
         return False
     subject = next((word for word in words if word.dep in SUBJECTS), None)

@@ -414,6 +414,8 @@ def has_head(phrases: Material, moment: Moment, seen: Analysis) -> bool:
 def feeling_of(phrases: Material, seen: Analysis, sentence: str, tone: str) -> tuple[Moment | None, str]:
     """Return the strongest feeling with its sentence; sad feelings precede all others."""
     known = [one for one in seen.feelings.values() if one.name in phrases.feelings and one.score >= _least(one, tone)]
+    brief = len(seen.text.split()) <= BRIEFLY  # "the parcel lay in the rain again. Unbelievable." is no surprise
+    known = [one for one in known if brief or one.name != "astonishing"]
     known = [one for one in known if has_head(phrases, phrases.feelings[one.name], seen)]
     known = [one for one in known if not re.search(rf'["“][^"”]*{re.escape(one.text.strip(".!?"))}', seen.text)]
     if may_be_dark(seen.text):  # "that's Portugal gone!" is no good news

@@ -161,7 +161,7 @@ def _is_asserted(tree: Tree, noun: Word) -> bool:
         helpers = {word.low for word in tree.children(above)}
         if helpers & (_DENYING | _IMAGINING):
             return False
-        if above.dep in ("ROOT", "conj", "ccomp"):
+        if above.dep in ("ROOT", "conj"):
             break
     return True
 

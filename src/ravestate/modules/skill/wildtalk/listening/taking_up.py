@@ -7,6 +7,7 @@ from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
 
 from ravestate.modules.meta.nlp.analysis import Analysis
+from ravestate.modules.meta.nlp.tree import SUBJECTS
 
 from .echo import Told, is_astonished, told_in, words_of
 from .highlight import highlight_in
@@ -15,6 +16,9 @@ from .state import State
 
 OWN = ("once", "not", "might", "plan")
 """Tenses that use only groups with the tense in their name."""
+
+PIECE = 4
+"""The maximum number of words of a fragment, with its punctuation, that is dropped beside a sentence: *fair winds!*."""
 
 Groups = list[Sequence[Line]]
 
@@ -41,7 +45,9 @@ def taken_from(seen: Analysis, living: frozenset[str], known: str) -> Taken | No
     """
     statements = [one for one in seen.sentences if not one.rstrip().endswith("?") or is_astonished(seen, one)]
     told = sorted(told_in(seen, living), key=lambda one: one.start)
-    words = {word.index: word for one in statements for word in words_of(seen.tree, one)}
+    parts = [words_of(seen.tree, one) for one in statements]
+    full = [part for part in parts if len(part) > PIECE or any(word.dep in SUBJECTS for word in part)]
+    words = {word.index: word for part in full or parts for word in part}
     best = highlight_in(seen, [words[place] for place in sorted(words)], known)
     if best is None:
         return Taken(told[-1]) if told else None
