@@ -348,6 +348,10 @@ class _Follow:
                 yield from [Reading(self._with(words, thing, own))] if words else self._instead(own, thing)
         if not words:
             yield from self._instead([word for word in own if word is not one])
+        kinds = [thing for thing in self.last.asked if not thing.label] if one.low in ("one", "ones") else []
+        for rank, kind in enumerate(kinds if own != self.words else ()):  # "which is the biggest one?", of volcanoes
+            noun = kind.text.split()[-1]
+            yield Reading(_question([noun if word is one else word.text for word in self.words]), LESS * (rank + 1))
 
     def _instead(self, new: Sequence[Word], text: str = "") -> Iterator[Reading]:
         """Yield earlier questions, latest first, with new words in place of a part of the same kind.
