@@ -9,6 +9,7 @@ from __future__ import annotations
 import re
 from collections.abc import Iterator
 from dataclasses import dataclass
+from itertools import zip_longest
 
 from ravestate.language.contractions import word_set
 from ravestate.language.matcher import bundled_matcher
@@ -45,6 +46,11 @@ _STRETCHED = re.compile(r"([a-z])\1{2,}")
 _TURN = re.compile(r"\b(?:but|although|though|however)\b")
 _HEDGE = re.compile(r"\b(?:probably|prob|maybe|perhaps|possibly|i guess|i suppose)\b(?! (?!yes|no|so|not)\w)")
 """A hedge before an answer or at the end of a part. In *maybe he is at home*, it does not count: no answer follows."""
+_WEAKENING = re.compile(
+    r"\b(?:a (?:bit|little)|sort of|kinda|kind of|in a way|on the whole|in (?:principle|theory)|as far as|could|might|looks like|seems|mostly"
+    r"|reasonably|tolerably|more or less|if|unless|once|after|at least|hope|provided|perhaps|maybe)\b"
+)
+"""Words beside a *yes* that make it weak: *in a way, yes*, *yes, if nobody else is listening*."""
 _FILLERS = word_set("well oh ah uh um er hm hmm mm honestly actually so and then please sorry frankly ha haha")
 _COURTESIES = ("thanks", "thank you", "many thanks")
 """Parts before an answer: *thank you, but no*."""
@@ -100,15 +106,21 @@ def yesno_of(text: str) -> YesNo:
 def _score(text: str) -> int | None:
     """Return the score of a text's first sentence. Skip sentences that consist of fillers."""
     found: int | None = None
-    opened = hedged = False
-    for part, marks in _parts(text):
+    opened = hedged = weak = False
+    parts = list(_parts(text))
+    for (part, marks), (after, _) in zip_longest(parts, parts[1:], fillvalue=("", "")):
         score = _score_of_part(part, asks="?" in marks)
+        weak = weak or (_explicit(part) is None and _WEAKENING.search(part) is not None)
         if (hedge := _HEDGE.search(part)) is not None:
             hedged = True
             if found is not None and hedge[0] == part:
                 continue
         if not found:
-            if score is None and len(part.split()) > _LEAD:
+            if (
+                score is None
+                and len(part.split()) > _LEAD
+                and (_explicit(after) is None or not marks.startswith((",", ":")))
+            ):
                 break
             found = found if score is None else score
             opened = _explicit(part) is not None
@@ -119,9 +131,10 @@ def _score(text: str) -> int | None:
             return found if whole is None else whole
         elif score:
             found = max(found, score, key=abs)
-        if not {*".!?…\n"}.isdisjoint(marks):
+        echoes = found is None and "?" in marks and len(part.split()) <= _LEAD  # "what? no!"
+        if not echoes and not {*".!?…\n"}.isdisjoint(marks):
             break
-    return found // abs(found) if found and hedged else found
+    return found // abs(found) if found and (hedged or (weak and found > 0)) else found
 
 
 def _parts(text: str) -> Iterator[tuple[str, str]]:
