@@ -112,6 +112,7 @@ class Matcher:
         self._learnt: _Learnt | None = None
         self._matching = threading.Lock()
         self._latest: dict[str, Match | None] = {}
+        self._ranked: dict[str, tuple[Match, ...]] = {}
 
     @property
     def loaded(self) -> bool:
@@ -179,7 +180,12 @@ class Matcher:
 
     def ranked(self, sentence: str) -> list[Match]:
         """Return all classes, best first. The class with an empty name is *none of these*."""
-        return self.ranked_all([sentence])[0]
+        if self._learnt is None:
+            return self.ranked_all([sentence])[0]
+        with self._matching:
+            found = self._ranked.get(sentence) or tuple(self.ranked_all([sentence])[0])
+            keep_latest(self._ranked, {sentence: found}, REMEMBERED)
+        return list(found)
 
     def ranked_all(self, sentences: Sequence[str], most: int | None = None) -> list[list[Match]]:
         """Return the `most` best classes of each sentence, best first; by default all."""

@@ -17,6 +17,7 @@ from ravestate.language.heap import keep_few_heaps, note_load
 from ravestate.language.lexicon import load_lexicon, loaded_lexicon
 from ravestate.language.loading import LOADING
 from ravestate.language.normal import Normal, normalise
+from ravestate.language.recent import keep_latest
 
 from .blocking import blocked, postponed
 from .preprocessing import READ_AS, preprocess
@@ -30,6 +31,9 @@ LONGEST = 2000
 
 TOGETHER = 8
 """The maximum number of waiting texts in one batch. Batches halve the time per text."""
+
+REMEMBERED = 32
+"""The number of texts whose trees are kept, because several modules read the same text."""
 
 _INSTALL = "pip install 'ravestate[nlp]'"
 
@@ -55,6 +59,7 @@ class Pipeline:
         self.name = name
         self._lock = threading.Lock()
         self._orders: deque[_Order] = deque()
+        self._latest: dict[Normal, tuple[Tree, tuple[Entity, ...]]] = {}
         # spaCy keeps its computing backend in a context variable. In a new context, spaCy would look for a backend, which
         # takes milliseconds.
         self._context = Context()
@@ -99,7 +104,11 @@ class Pipeline:
             PlatformError: See `load`.
         """
         self.load()
-        order = _Order(self.normalise(text) if isinstance(text, str) else text)
+        normal = self.normalise(text) if isinstance(text, str) else text
+        latest = self._latest.get(normal)
+        if latest is not None:
+            return latest
+        order = _Order(normal)
         self._orders.append(order)
         with self._lock:
             while order.found is None and order.error is None:
@@ -109,6 +118,8 @@ class Pipeline:
         if order.error is not None:
             raise order.error
         assert order.found is not None
+        with self._lock:
+            keep_latest(self._latest, {normal: order.found}, REMEMBERED)
         return order.found
 
     def _read(self, orders: list[_Order]) -> None:
