@@ -186,7 +186,7 @@ class Consent:
         return False
 
     def _is_held_beside(self, half: Half, spike: Spike) -> bool:
-        """Return whether an activation holds a spike that the half holds for the activation's clause, too."""
+        """Return whether both an activation and a half hold a spike for the same clause."""
         for holder in spike.holders:
             rank = half.rank.get(holder.clause.index)
             if rank is not None and self.state.keeps(half.best[rank], spike):
@@ -309,7 +309,7 @@ class Consent:
             for other in list(spike.holders) if self.state.alternatives else ():
                 queue = self.state.alternatives.get(other)
                 if queue is not None and any([clause.rule is rival.clause.rule for clause in queue[0]]):
-                    self.halves.sets.unfold(other)  # later, this rule's alternatives could not take the refused spike
+                    self.halves.sets.unfold(other)  # now: an alternative takes no spike that its rule gave up
             self.holdings.entries.refuse_for_good(spike, rival.clause.rule)
         self.holdings.end(rival, "eliminated")
 

@@ -77,7 +77,7 @@ class Finish:
 
 @dataclass(slots=True)
 class AddRule:
-    """The context gets a policy with more rules; it has all rules of the present policy, too."""
+    """The context gets a new policy, which has all rules of the present policy and at least one more."""
 
     policy: Policy
 

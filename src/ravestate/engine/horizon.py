@@ -1,4 +1,4 @@
-"""The horizon (law L16): whether the missing constraints of a rival may yet be met.
+"""The horizon (law L16): whether the missing constraints (*needs*) of a rival may yet be met.
 
 The horizon of a group is the set of signals that rules of the group may yet cause. A rule may cause a signal if the rule
 runs, or if its constraints are met or may yet be met. So a signal depends on other signals: the horizon is a least fixed

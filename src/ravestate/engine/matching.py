@@ -1,6 +1,6 @@
-"""Matching: each new spike joins a causal group, and is offered to the activations that lack it.
+"""Matching: each new spike joins a causal group, and is offered to the activations that lack it (laws L11, L12, L19).
 
-See laws L11, L12 and L19.
+A *need* is one constraint of a clause: one spike meets it. A detached need looks at a spike without consuming it.
 """
 
 from __future__ import annotations

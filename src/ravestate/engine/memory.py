@@ -16,7 +16,7 @@ PASSIVE = (int, float, str, bytes, bool, type(None), MappingProxyType)
 class Memory:
     """The slots and counters of an engine, and notes about its rules.
 
-    An engine at rest has nothing else. In a working engine, these are in the `State`.
+    An engine at rest has nothing else. In a working engine, the `State` has this data.
 
     Args:
         policy: A policy from ``rs.compile``.

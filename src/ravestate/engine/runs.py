@@ -238,8 +238,8 @@ def _roots(run: Activation) -> list[Group]:
 
 
 def _handles_error(run: Activation) -> bool:
-    """Return whether a run holds a spike of ``core:error`` or a descendant. If so, its failure does not raise
-    ``core:error`` again."""
+    """Return whether a run holds a spike of ``core:error``, or a descendant of one. If so, a failure of the run does
+    not raise ``core:error`` again."""
     return any(spike is not None and spike.comes_from("core:error") for spike in run.spikes)
 
 
@@ -248,6 +248,6 @@ def _endless(rules: Sequence[RulePlan]) -> str:
     names = ", ".join(rule.name for rule in rules)
     whom = "each other" if len(rules) > 1 else "itself"
     return (
-        f"an endless loop: {names} triggered {whom} {MANY + TURNS:,} times within one instant; write "
-        ".min_age(seconds) after a signal of the loop, so that time passes"
+        f"an endless loop: {names} triggered {whom} {MANY + TURNS:,} times within one instant; add "
+        ".min_age(seconds) to a signal of the loop, so that time passes"
     )
