@@ -13,7 +13,7 @@ from itertools import pairwise
 
 from ravestate.draw.layered import LayeredGraph, places
 
-_WORK = 400_000  # the maximum of segments x sweeps
+_WORK = 400_000  # the maximum number of segments times sweeps
 _PATIENCE = 4  # the search ends after this many sweeps without improvement
 
 

@@ -13,7 +13,7 @@ number of activations depends on the rule:
   (``benches.py``)
 - for any other rule: one activation with each first spike, because consent chooses one of them
 - for a rule that was added while a spike of its signals was live: also one activation with each first spike, because
-  each activation may lose a spike and then take that older spike
+  each activation may later lose a spike, and take that live spike instead
 
 To *unfold* an entry is to make its activations. All entries unfold if there is a tracer, and when a rule retires or is
 added. The entries of a group unfold before the group merges. `Consent` unfolds an entry to judge its clauses one by
