@@ -145,7 +145,7 @@ class Conversation:
             self._fall_silent()
 
     async def until_agent_leaves(self) -> None:
-        """Wait until the agent ends the conversation (``ctx.stop()``). If a call of `end` ends it instead, never return.
+        """Wait until the agent ends the conversation (``ctx.stop()``). If `end` ends the conversation, never return.
 
         Raises:
             RavestateError: The agent has failed.

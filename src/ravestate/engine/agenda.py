@@ -231,7 +231,7 @@ class Agenda:
             if best not in stuck:
                 continue  # this activation has asked again in the meantime
             if order != state.order(best):
-                heapq.heappush(breakers, (state.order(best), best))  # the rule has run, so its utility changed
+                heapq.heappush(breakers, (state.order(best), best))  # its utility has changed since
                 continue
             freed = no_longer_stuck(best, stuck)
             if not found.issuperset(freed):  # a change after the search has freed activations, so search again

@@ -1,4 +1,4 @@
-"""Events: the inputs of an engine. A closed union of records; the journal keeps them, and a replay feeds them again."""
+"""Events: the inputs of an engine. A closed union of records; a journal keeps them for a replay."""
 
 from __future__ import annotations
 

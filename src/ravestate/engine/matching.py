@@ -84,8 +84,9 @@ class Matching:
         return root
 
     def _offer_again(self, group: Group) -> None:
-        """Offer the spikes of a merged group again, oldest first: coherence kept some of them apart until now (L12).
+        """Offer the spikes of a merged group again, oldest first.
 
+        Some needs of a clause may only hold spikes of one group (L12). Until now, this kept some of these spikes apart.
         As at its birth, a spike is offered only to activations that are older than itself, oldest first.
         """
         state, holdings = self.state, self.holdings

@@ -216,8 +216,11 @@ class Runs:
             state.dirty[group] = None
 
     def _relinquish(self, run: Activation) -> None:
-        """Settle Resign, or Error before a write (L18): free the run's slots, make its rule give up the run's spikes,
-        and let the next alternative (``conflict_sets.py``) ask."""
+        """Settle a run that resigned, or failed before a write (L18).
+
+        Free the run's slots, make its rule give up the run's spikes, and let the next alternative
+        (``conflict_sets.py``) ask.
+        """
         for group in _roots(run):
             for slot in run.clause.rule.slots:
                 group.free(slot, run)

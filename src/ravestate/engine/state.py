@@ -160,7 +160,7 @@ class State(Memory):
         self.stirred: dict[tuple[int, int], None] = NOTHING
         """The hopes that have changed. The activations that have them ask again (`Waits.wake`)."""
         self.alternatives: dict[Activation, tuple[tuple[Clause, ...], int, int]] = NOTHING
-        """Key: the activation of the best clause of a conflict set (``conflict_sets.py``). Value: the clauses of the
+        """Key: the present activation of a conflict set (``conflict_sets.py``). Value: the clauses of the
         set, how many of them have had an activation, and a number *n*. Their activations get the numbers from *n* + 1
         on."""
         self.running: dict[int, Activation] = {}
@@ -181,7 +181,7 @@ class State(Memory):
         predicate, the predicate, and the exception."""
         self.loops = Loops(self)
         self.busy = 0
-        """How many activations count for ``core:activity``."""
+        """How many activations, and spikes in halves, count for ``core:activity``."""
         self.added = 0
         """The number of the newest spike at the time when a rule was last added."""
 

@@ -83,8 +83,8 @@ def _fed(policy: Plans, clauses: list[Clause]) -> list[Clause]:
 
 
 def _wanted(clause: Clause) -> list[Need]:
-    """Return the needs of a clause that take a new spike for each run. Its other needs, the detached ones, may reuse a
-    spike."""
+    """Return the needs of a clause that take a new spike for each run: the non-detached needs, or all if all are
+    detached."""
     return [need for need in clause.needs if not need.detached] or list(clause.needs)
 
 

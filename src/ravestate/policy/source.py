@@ -4,7 +4,7 @@ An act is a read, a write, an emit or the use of a payload. This file checks an 
 closure hold the slot or signal. All other acts are checked when the rule runs (law L3), e.g. an act on a name that the
 function itself binds.
 
-Guarded code is also checked only when the rule runs. Code is guarded if it is in a branch on a constant, on
+Guarded code, too, is checked only when the rule runs. Code is guarded if it is in a branch on a constant, on
 ``hasattr``, or on a variable of an enclosing function. An enclosing function may make several rules with
 different declarations. The body of a ``try`` that expects a missing name is guarded as well.
 """

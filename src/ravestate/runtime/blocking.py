@@ -36,10 +36,10 @@ class StepTimer:
     """Measures the steps of async rules, and warns of steps that block the loop. Use it on the loop's thread only.
 
     A step blocks the loop if it computes, or sleeps, for longer than `BLOCKING`. The time for which the thread waits
-    for a processor or for other threads does not count, so a busy machine causes no warning. The operating
-    system counts how often the thread slept voluntarily, and how often the scheduler preempted it. If the scheduler
-    preempted the thread during a step, the timer ignores the sleeps of this step. On Windows and macOS, which do not
-    count this, the timer ignores all sleeps.
+    for a processor or for other threads does not count, so a busy machine causes no warning. The operating system
+    counts how often the thread slept voluntarily, and how often the scheduler preempted it. If the scheduler preempted
+    the thread during a step, the timer ignores the sleeps of this step. Windows and macOS do not count this; there, the
+    timer ignores all sleeps.
 
     Reading the CPU time costs as much as a short rule. One reading serves all steps that begin within `FRESH` seconds,
     so a reported time may be too long by that much.

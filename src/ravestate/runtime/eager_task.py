@@ -26,7 +26,7 @@ KIND: Final = Done
 
 
 class EagerTask:
-    """A spare task. When it has adopted the coroutine of a rule, it is the rule's task. The timer measures each step.
+    """A spare task. When it has adopted the coroutine of a rule, it is the rule's task. `timer` measures each step.
 
     The coroutine starts with the context variables `variables`. No other code sees the coroutine's changes to them.
 
