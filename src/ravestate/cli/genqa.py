@@ -51,7 +51,7 @@ def _add_index(parser: argparse.ArgumentParser, default: str | None) -> None:
 def run(options: argparse.Namespace) -> int:
     try:
         return _run(options)
-    except PlatformError as error:  # the message names the option of `ravestate run`, not that of this command
+    except PlatformError as error:  # name this command's option instead of that of `ravestate run`
         said = str(error).removeprefix("genqa: ").replace("--set genqa.index=", "--index ")
         raise PlatformError(said) from error
 

@@ -1,6 +1,6 @@
 """A bench: first spikes of clauses with two constraints. They wait together for a second spike, their *counterpart*.
 
-A *half* keeps such first spikes without activations (``halves.py``); ``benches.py`` explains how benches are used.
+A *half* keeps such first spikes without activations (``halves.py``). ``benches.py`` explains the use of benches.
 """
 
 from __future__ import annotations

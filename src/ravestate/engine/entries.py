@@ -1,8 +1,9 @@
 """The tables of live spikes and of *halves* (laws L12, L14, L23).
 
 A clause with two constraints, its *needs*, takes two spikes. A half keeps the first spike, without an activation, until
-the second spike comes. A half serves many clauses that hear the same signal (``halves.py``). An *entry* is a spike that
-a half keeps. A *bench* is a list of entries that share their second spike, the *counterpart* (``benches.py``).
+the second spike comes. One half does this for all clauses that the engine can treat alike (``halves.py``). An *entry*
+is a spike that a half keeps. A *bench* is a list of entries that share their second spike, the *counterpart*
+(``benches.py``).
 """
 
 from __future__ import annotations

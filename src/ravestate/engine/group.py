@@ -44,7 +44,7 @@ NO_NUMBERS: Final[frozenset[int]] = frozenset()
 
 
 class Group:
-    """The slots that are taken in a group, and the activations that have a stake in it.
+    """The slots that are taken in a group, and the activations that hold its spikes or wait in it.
 
     Attributes:
         taken: Key: the number of a slot that is taken in the group; value: the runs that hold the slot, or None if a

@@ -267,7 +267,7 @@ class Holdings:
     def give_up(self, run: Activation, reason: str) -> None:
         """Make all other activations of a run's rule give up the run's non-detached spikes, forever."""
         rule = run.clause.rule
-        for spike in run.stands_on:  # refuse all first: an activation that loses a spike immediately takes another
+        for spike in run.stands_on:  # refuse all first, because an activation that loses one takes another
             self.benches.unbench(spike)
             self.entries.refuse_for_good(spike, rule)
         for spike in run.stands_on:

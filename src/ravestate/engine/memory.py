@@ -54,7 +54,7 @@ class Memory:
         """Key: the number of a collection that was not read since its last change; value: its items, which a
         write may change without a copy."""
         self.ran: dict[int, float] = NOTHING
-        """Number of a rule with a cooldown → the time of its last run (seconds)."""
+        """Number of a rule with a cooldown → the end of its last run that fired (seconds)."""
         self.retired = NO_NUMBERS
         """The numbers of the rules that have retired."""
         self.dropped: dict[str, int] = NOTHING

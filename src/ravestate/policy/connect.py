@@ -41,7 +41,7 @@ def connect(signals: Sequence[SignalPlan], slots: Iterable[SlotPlan], rules: Ite
 def find_kin(rules: Iterable[RulePlan], causes: Causes) -> None:
     """Set the kin of each need: the needs of its clause that must hold spikes of the same causal group (L12).
 
-    Needs are kin if their pathways share a signal.
+    Needs are kin if their pathways share a signal, or if their signals belong to one slot. Kin of kin are kin, too.
     """
     for rule in rules:
         for clause in rule.clauses:

@@ -15,7 +15,7 @@ from ravestate.runtime.spares import Spares
 if TYPE_CHECKING:
     from ravestate.runtime.functions import Functions
 
-GRACE = 5.0  # a cancelled rule has this many seconds to clean up; then its run counts as ended
+GRACE = 5.0  # a cancelled rule has this many seconds to clean up; after that, its run counts as ended
 
 CLEANING = 10
 """A cancelled rule has this many turns of the event loop for its last writes, before any other rule continues."""

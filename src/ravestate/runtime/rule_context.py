@@ -1,4 +1,4 @@
-"""The argument of every rule's function, which reads slots and acts only through this argument (laws L3, L13)."""
+"""The argument of a rule's function. The function reads slots and acts only through this argument (laws L3, L13)."""
 
 from __future__ import annotations
 

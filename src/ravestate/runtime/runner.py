@@ -249,7 +249,7 @@ class Runner:
         try:
             for _ in range(rounds):
                 if (self._is_virtual or rules.cleaning) and functions.holds(halted=self.clock.halted):
-                    break  # the functions or rules for which effects wait schedule the next call when they end
+                    break  # effects must wait: the functions that hold them up schedule the next call when they end
                 self._rounds += 1
                 if not todo:
                     if self._journal is not None:

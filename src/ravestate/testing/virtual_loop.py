@@ -42,7 +42,7 @@ class VirtualLoop(asyncio.SelectorEventLoop):
     def __init__(self) -> None:
         self._virtual = 0.0
         self.goal: float | None = None
-        """The virtual time (seconds) at which `run_to` stops; None while it does not run."""
+        """The virtual time (seconds) at which `run_to` stops; None outside of `run_to`."""
         self.busy: Callable[[], list[str]] = list
         self._timers = 0
         self._endless = ""
