@@ -121,7 +121,7 @@ class Holdings:
                 self.acquire(activation, need, best)
 
     def swap(self, activation: Activation, need: Need, spike: Spike) -> None:
-        """Let a detached need hold another spike."""
+        """Give a need another spike in place of its present one."""
         self._release(activation, need, "")
         self.acquire(activation, need, spike)
         if activation.state == GATHERING:

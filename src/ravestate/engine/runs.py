@@ -186,8 +186,10 @@ class Runs:
             del self.state.watches[watch.clause]
 
     def _consume(self, run: Activation) -> None:
-        """Settle a run as Done (L18): consume its slots in its groups. Other writers of these slots give up their spikes of
-        these groups."""
+        """Settle a run as Done (L18): consume its slots in its groups.
+
+        Other writers of these slots give up their spikes of these groups.
+        """
         state = self.state
         rule = run.clause.rule
         if not rule.slots:

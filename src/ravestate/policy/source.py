@@ -5,8 +5,8 @@ closure hold the slot or signal. All other acts are checked when the rule runs (
 function itself binds.
 
 Guarded code, too, is checked only when the rule runs. Code is guarded if it is in a branch on a constant, on
-``hasattr``, or on a variable of an enclosing function, which may make several rules with different declarations. The
-body of a ``try`` that expects a missing name is guarded as well.
+``hasattr``, or on a variable of an enclosing function. For other values of this variable, the enclosing function may
+make rules with other declarations. The body of a ``try`` that expects a missing name is guarded as well.
 """
 
 from __future__ import annotations
