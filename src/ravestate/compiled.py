@@ -18,7 +18,7 @@ SOURCES = os.path.dirname(__file__)
 PLACE = os.path.join(SOURCES, "native", EXTENSION_SUFFIXES[0].split(".")[1])
 """The folder of the compiled modules for this interpreter, e.g. ``native/cpython-311-x86_64-linux-gnu``."""
 STAMP = os.path.join(PLACE, "stamp")
-"""A file with the checksum of the compiled sources, followed by their names, one on each line."""
+"""A file with a checksum of the compiled source files, and then their names, one on each line."""
 
 COMPILED = "compiled"
 PURE = "pure Python"

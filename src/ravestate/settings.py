@@ -65,7 +65,7 @@ def load_settings(
     given: Mapping[str, Mapping[str, Any] | pydantic.BaseModel] | None = None,
     environment: Mapping[str, str] | None = None,
 ) -> dict[str, Any]:
-    """Return the settings of the modules, by the module's name.
+    """Return the settings of each module, by the module's name.
 
     Values in `given` override values in the environment, and these override the defaults. For each module, `given` has
     values of fields, or an instance of the module's settings class.

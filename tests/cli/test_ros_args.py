@@ -63,7 +63,9 @@ def test_a_parameter_file_of_a_launch_file_becomes_settings(tmp_path: Path) -> N
     ]  # fmt: skip
 
 
-@pytest.mark.parametrize(("text", "words"), [("[1]", "no parameter file"), ("/**: {a: 1}", "has no ros__parameters")])
+@pytest.mark.parametrize(
+    ("text", "words"), [("[1]", "not a parameter file"), ("/**: {a: 1}", "has no ros__parameters")]
+)
 def test_a_wrong_parameter_file_is_refused(tmp_path: Path, text: str, words: str) -> None:
     file = tmp_path / "params.yaml"
     file.write_text(text)

@@ -60,10 +60,8 @@ def test_a_rule_that_waits_for_an_earlier_writer_of_its_slot_is_unreachable(scen
     scene.rule("say", scene.heard, writes=scene.out, emits=said)
     scene.rule("again", said, writes=scene.out)
     text = scene.findings()["unreachable", "m:again"]
-    assert "waits for an effect of rules that write m:out before it" in text
-    assert (
-        "add .detached() to the signal that it waits for, or detached=True to the rule that raises this signal" in text
-    )
+    assert "waits for a signal that only other writers of m:out raise" in text
+    assert "add .detached() to this signal, or detached=True to the rule that raises it" in text
 
 
 @pytest.mark.parametrize("way", ["constraint", "rule"])
@@ -326,7 +324,7 @@ def test_the_source_of_rules_is_examined_only_on_demand(scene: Scene) -> None:
     assert (kind, subject, others) == ("undeclared", "m:say", [])
     line = say.function.__code__.co_firstlineno + 2
     assert text == (
-        f"undeclared: rule m:say ({say.origin}) writes m:out (line {line}) without declaring it: write writes=out"
+        f"undeclared: rule m:say ({say.origin}) writes m:out (line {line}) without declaring it: declare writes=out"
     )
 
 

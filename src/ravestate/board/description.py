@@ -16,7 +16,7 @@ from ravestate.policy.completion import UNIT
 from ravestate.policy.model import Clause, Need, RulePlan, SignalPlan, SlotPlan
 from ravestate.policy.policy import Policy
 
-_Users = dict[str, list[str]]  # slot's name → the rules that read it, or write it
+_Users = dict[str, list[str]]  # name of a slot → the rules that read it, or the rules that write it
 
 
 @dataclass(frozen=True, slots=True)

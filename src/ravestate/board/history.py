@@ -40,7 +40,7 @@ class Attempt:
     started: t.Started | None = None
     settled: t.Settled | None = None
     _missing: tuple[str, ...] = ()  # the signals for which it has no spike now
-    _before: tuple[str, ...] = ()  # the same signals before the losses of this instant
+    _before: tuple[str, ...] = ()  # the signals that `_missing` had before the losses of this instant
     _holds: set[int] = field(default_factory=set[int])  # the numbers of the spikes that it holds now
 
     @property
@@ -244,7 +244,7 @@ class History:
 
 
 class Rivals:
-    """Writes phrases about other rules for an explanation: the rivals of a rule, and the rule that answered instead."""
+    """Writes the phrases of an explanation about other rules: a rule's rivals, and the rule that answered first."""
 
     def __init__(self, history: History, description: Description) -> None:
         self._history = history
@@ -296,7 +296,7 @@ class Rivals:
         return by, f"{before} → {by}" if before else by
 
     def pressure(self, rule: RuleView, end: float) -> str:
-        """Return a phrase that says which rule waited for `rule`, since when, and when the patience of `rule` ran out.
+        """Return a phrase: which rule waited for `rule`, from when on, and when the patience of `rule` ran out.
 
         If rules waited for `rule` several times, the phrase is about the last wait that was over by `end` (seconds).
         """

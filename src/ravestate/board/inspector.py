@@ -35,8 +35,8 @@ from ravestate.draw.text import label_size, node_size
 FRAME = 0.05  # the minimum number of seconds between two frames of records
 
 SHARE = 0.015
-"""The share of the event loop's time that one inspector may use. To keep to it, the inspector waits longer after a slow
-frame."""
+"""The share of the event loop's time that one inspector may use. After a slow frame, the inspector waits longer, to
+keep to its share."""
 
 OF_SPARE = 0.5  # the share of the process's idle time that one inspector may use in addition
 MOST = 800  # the maximum number of records in a frame; a longer frame would delay the agent

@@ -228,7 +228,7 @@ class Recorders:
 
     def _grow(self) -> None:
         self._grown += BATCH
-        if self._grown * 50 >= self._in_all:  # seldom true, so a record costs almost nothing
+        if self._grown * 50 >= self._in_all:  # seldom true, so most records cost almost nothing
             self._grown = 0
             recorders = [found for known in self._of.values() if (found := known()) is not None]
             length = fair_length([len(recorder.records) for recorder in recorders], self._in_all)

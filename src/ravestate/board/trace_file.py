@@ -39,7 +39,7 @@ LONGEST = 120  # the maximum number of seconds that reading a file may take
 
 MOST_MEMORY = 2 * 1024**3
 """The maximum address space of the process that reads an uploaded file, in bytes. A valid recording of 64 MB needs a
-third of it; a file with millions of faulty values would need several times as much."""
+third of this memory; a file with millions of faulty values would need several times as much."""
 
 TOO_MUCH = f"reading it takes more than {MOST_MEMORY // 1024**3} GB of memory"
 
@@ -173,7 +173,7 @@ def _parsed(text: str) -> Any:
 
 
 def _limit_memory() -> None:
-    """Limit the memory of this process, where the system can."""
+    """Limit the memory of this process, if the operating system supports that."""
     with contextlib.suppress(ImportError, ValueError, OSError):  # Windows; a lower limit is set already; macOS
         import resource
 

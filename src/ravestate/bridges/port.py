@@ -145,7 +145,7 @@ class Conversation:
             self._fall_silent()
 
     async def until_agent_leaves(self) -> None:
-        """Wait until the agent ends the conversation (``ctx.stop()``). If a call of `end` ends it, never return.
+        """Wait until the agent ends the conversation (``ctx.stop()``). If `end` ends the conversation, never return.
 
         Raises:
             RavestateError: The agent has failed.
@@ -234,7 +234,7 @@ class Conversation:
 
     async def _follow(self, utterance: Utterance) -> None:
         """End a growing utterance as soon as no rule can add to it, even if a rule has failed in the middle of it."""
-        with contextlib.suppress(RavestateError):  # an error of the engine: `until_agent_leaves` raises it
+        with contextlib.suppress(RavestateError):  # `until_agent_leaves` raises this error of the engine
             await self.context.quiet(rawio.output)
         if self._growing is utterance:
             self._fall_silent()

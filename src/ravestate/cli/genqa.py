@@ -51,7 +51,7 @@ def _add_index(parser: argparse.ArgumentParser, default: str | None) -> None:
 def run(options: argparse.Namespace) -> int:
     try:
         return _run(options)
-    except PlatformError as error:  # the message names the option of `ravestate run`, not that of this command
+    except PlatformError as error:  # name this command's option instead of that of `ravestate run`
         said = str(error).removeprefix("genqa: ").replace("--set genqa.index=", "--index ")
         raise PlatformError(said) from error
 
@@ -152,7 +152,7 @@ def _ask(settings: Settings, question: str) -> int:
     sure, unsure = settings.sure, settings.unsure
     how = "sure" if answer.confidence >= sure else "unsure" if answer.confidence >= unsure else "silent"
     print(f"{printable(answer.text)}\n  source      {printable(answer.source)}")
-    print(f"  confidence  {answer.confidence:.2f} ({how}: sure from {sure}, unsure from {unsure})")
+    print(f"  confidence  {answer.confidence:.2f} ({how}; the agent is sure from {sure}, unsure from {unsure})")
     print("  read        score  covers")
     for candidate in answer.candidates:
         text = printable(candidate.text)

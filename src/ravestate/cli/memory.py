@@ -78,7 +78,7 @@ def run(options: argparse.Namespace) -> int:
     try:
         try:
             memory.opened().result()
-        except PlatformError as error:  # the message names the option of `ravestate run`, not that of this command
+        except PlatformError as error:  # name this command's option instead of that of `ravestate run`
             raise PlatformError(str(error).replace("--set ontology.path=", "--path ")) from error
         unseen = memory.undeclared().result()
         if unseen:

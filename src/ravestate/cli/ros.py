@@ -209,8 +209,8 @@ async def _echo(options: argparse.Namespace, node: Node, graph: dict[str, Any]) 
     row = next((row for row in graph["topics"] if row["name"] == options.topic), None)
     if row is None and not options.type:
         raise PlatformError(
-            f"there is no topic {options.topic}{nearest(options.topic, _names(graph))}; ravestate ros topics lists them. To "
-            "wait for one: --type std_msgs/String"
+            f"there is no topic {options.topic}{nearest(options.topic, _names(graph))}; ravestate ros topics lists all "
+            "topics. To wait until a node publishes this topic, name its type, e.g. --type std_msgs/String"
         )
     done, count = asyncio.Event(), 0
 
@@ -225,7 +225,7 @@ async def _echo(options: argparse.Namespace, node: Node, graph: dict[str, Any]) 
     qos = quality("sensor_data" if best else None, depth=100, latch=False)
     type_: str = options.type or (row["types"][0] if row is not None and row["types"] else "")
     if not type_:
-        raise PlatformError(f"the type of {options.topic} is not known: --type std_msgs/String")
+        raise PlatformError(f"the type of {options.topic} is not known: name it, e.g. --type std_msgs/String")
     node.subscribe(
         options.topic, type_, lambda message: None if done.is_set() else show(message), latest=False, qos=qos
     )

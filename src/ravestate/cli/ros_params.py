@@ -15,7 +15,7 @@ PARAMETERS = "ros__parameters"
 SIMULATED = "use_sim_time"
 """Every node has this parameter, which says whether time is simulated. It is also a setting of `ros1` and `ros2`."""
 OTHERS = ("qos_overrides", "start_type_description_service")
-"""ROS 2 gives every node parameters whose names begin like this. They are no settings."""
+"""ROS 2 gives every node parameters whose names begin like this. They are not settings."""
 
 Found = list[tuple[str, Any]]
 
@@ -36,7 +36,7 @@ def from_file(path: Path, node: str, namespace: str) -> Found:
     except (OSError, ValueError) as error:
         raise UsageError(f"cannot read the parameter file {path}: {error}") from error
     if not isinstance(document, Mapping):
-        raise UsageError(f"{path} is no parameter file: it begins with a node's name, or with /**")
+        raise UsageError(f"{path} is not a parameter file: such a file begins with a node's name, or with /**")
     own = "/" + f"{namespace}/{node}".strip("/")
     found: Found = []
     for name, content in cast("Mapping[str, Any]", document).items():

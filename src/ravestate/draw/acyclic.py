@@ -78,7 +78,7 @@ def _peel(count: int, edges: Sequence[tuple[int, int, int]]) -> list[int]:
     return place
 
 
-_LAST = (0, 2)  # a vertex of these ranks (see `_urgency`) gets the last free number, any other vertex the first
+_LAST = (0, 2)  # vertices of these ranks (see `_urgency`) get the last free number, other vertices get the first one
 
 
 def _urgency(out: int, into: int) -> tuple[int, int]:

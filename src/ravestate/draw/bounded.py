@@ -2,8 +2,8 @@
 
 If edges are as short as possible, layers may be few and crowded, e.g. if all neighbours of a hub share one layer. If the
 picture is then tall and narrow, the layers get a bound. Vertices beyond the bound move to a later layer, as in the
-scheduling of Coffman and Graham (1972). Among the vertices that are ready, those with the most recently placed
-predecessors come first, so that chains continue.
+scheduling of Coffman and Graham (1972). Among the vertices that are ready, those of the
+latest original layer come first, so that chains continue.
 """
 
 from __future__ import annotations

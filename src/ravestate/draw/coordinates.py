@@ -1,4 +1,4 @@
-"""Coordinate assignment, which makes lines short first and then straight.
+"""Coordinate assignment: it first makes lines short, and then makes them straight.
 
 Each layer in turn moves as near as possible to its neighbours. Within one layer, a weighted isotonic regression (pool
 adjacent violators) finds the best coordinates that keep the minimum gaps. Forward and backward sweeps repeat this for

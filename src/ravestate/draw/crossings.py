@@ -1,8 +1,8 @@
 """Crossing minimisation: the order of the vertices within their layers.
 
-Barycentre sweeps run forwards and backwards. After each sweep, neighbours are transposed (Sugiyama, Tagawa and Toda
-1981; Gansner et al. 1993). There are two initial orders; the result is the best order that the sweeps find. The
-initial orders come from a depth-first search in declaration order, which keeps related declarations together.
+Barycentre sweeps run forwards and backwards. After each sweep, adjacent vertices swap places if this saves crossings
+(Sugiyama, Tagawa and Toda 1981; Gansner et al. 1993). There are two initial orders; the result is the best order found.
+The initial orders come from a depth-first search in declaration order, which keeps related declarations together.
 """
 
 from __future__ import annotations
@@ -13,7 +13,7 @@ from itertools import pairwise
 
 from ravestate.draw.layered import LayeredGraph, places
 
-_WORK = 400_000  # the maximum of segments x sweeps
+_WORK = 400_000  # the maximum number of segments times sweeps
 _PATIENCE = 4  # the search ends after this many sweeps without improvement
 
 

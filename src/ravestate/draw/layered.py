@@ -17,10 +17,10 @@ from ravestate.draw.graph import EdgeKind
 VertexKind = Literal["node", "label", "dummy"]
 
 _GAPS = {(True, True): 16.0, (True, False): 12.0, (False, True): 12.0, (False, False): 9.0}
-"""The minimum gap between two adjacent vertices (pixels). Key: whether the upper one is not a dummy, and the lower
-one."""
+"""The minimum gap between two adjacent vertices (pixels). Key: whether the upper vertex is not a dummy, and whether the
+lower vertex is not a dummy."""
 _SOLID: tuple[EdgeKind, ...] = ("writes", "emits")  # solid lines may overlap; dashed lines would blur each other
-_PITCH = 10.0  # pixels between ports of one side, where there is room
+_PITCH = 10.0  # pixels between the ports of one side, if there is room
 _MARGIN = 10.0  # pixels from a corner, which may be round, to the first or last port
 _LEAST = 3.0  # minimum pixels between ports; with less room, ports coincide, but entering and leaving lines stay apart
 

@@ -1,9 +1,9 @@
 """Layer assignment with short edges: the network simplex of Gansner, Koutsofios, North and Vo (1993).
 
-An arc is tight if it has its minimum length. A spanning tree of tight arcs fixes all ranks (layers). If one of its arcs
-is removed, the tree falls into two sides. The arc's cut value is the sum of (weight out - weight in) over the vertices
-on the side of the arc's tail. An arc with a negative cut value should be longer, so it leaves the tree. The tightest
-arc that crosses between the two sides in the other direction takes its place.
+An arc is tight if it has its minimum length. A spanning tree of tight arcs fixes all ranks (layers). If one arc of the
+tree is removed, the tree falls into two sides. The arc's cut value is the sum of (weight out - weight in) over the
+vertices on the side of the arc's tail. An arc with a negative cut value should be longer, so it leaves the tree. The
+tightest arc that crosses between the two sides in the other direction takes its place.
 """
 
 from __future__ import annotations
@@ -15,7 +15,7 @@ from ravestate.draw.acyclic import topological
 Arc = tuple[int, int, int, int]
 """An arc: its tail, its head, its weight, and its minimum length in layers."""
 
-_WORK = 2_000_000  # the maximum of exchanges x vertices
+_WORK = 2_000_000  # the maximum number of exchanges times vertices
 
 
 def network_simplex(count: int, arcs: Sequence[Arc]) -> list[int]:

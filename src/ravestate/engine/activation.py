@@ -1,8 +1,8 @@
 """The life of an activation (laws L12, L14, L17, L18).
 
-An activation is a clause plus the spikes that it has acquired. With consent, it becomes a run of the rule. Every clause
-also has an activation on stand-by, which holds no spike yet. No object represents a stand-by: the engine creates an
-object only when the first spike comes.
+An activation is a clause plus the spikes that it has acquired. Each constraint of the clause is a *need*: one spike
+meets it. With consent, the activation becomes a run of the rule. Every clause also has an activation on stand-by, which
+holds no spike yet. No object represents a stand-by: the engine creates an object only when the first spike comes.
 
 - `GATHERING`: the activation lacks a spike, a spike is too young, or a predicate on a slot is false.
 - `READY`: the activation holds all its spikes, all are old enough, and it asks for consent.
@@ -46,8 +46,8 @@ class State(enum.IntEnum):
 class Step(enum.IntEnum):
     """A step in the life of an activation."""
 
-    COMPLETE = 0  # the activation holds all its spikes, they are old enough, and its guards are true (L14)
-    LOSE = 1  # the activation gave a spike up, or a guard became false
+    COMPLETE = 0  # the activation holds all its spikes, they are old enough, and its slot predicates are true (L14)
+    LOSE = 1  # the activation gave a spike up, or a slot predicate became false
     REFUSE = 2  # a group refused consent (L15)
     GRANT = 3  # every group consented (L17)
     CANCEL = 4  # the run was interrupted, timed out, or wiped (L18, L20, L21)
@@ -111,7 +111,7 @@ class Activation:
         wrote: Whether the run has written a slot.
         deadline: The time at which the run times out (seconds).
         told: The reason for which the engine cancelled the run; empty if the engine did not cancel it.
-        lineage: The rules that led to the run, including its own rule. Only kept in an instant with many runs (L23).
+        lineage: The rules that led to the run, including its own rule. Kept only in an instant with many runs (L23).
     """
 
     __slots__ = (
@@ -256,7 +256,7 @@ class Refusal:
             work.
         taken: Whether a run has taken one of the activation's slots.
         in_doubt: Whether a rival may never be ready, so that only the end of its patience ends the wait.
-        hopes: The hopes of the activation → a count for each (`Horizon.hopes`).
+        hopes: Key: a hope of the activation; value: the hope's count (`Horizon.hopes`).
         interests: The groups whose changes may lift the refusal.
         leader: The activation that this one follows (``leaders.py``), or None.
         told: The names of rules in the trace's record of this wait; empty without a tracer.

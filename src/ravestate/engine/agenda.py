@@ -231,7 +231,7 @@ class Agenda:
             if best not in stuck:
                 continue  # this activation has asked again in the meantime
             if order != state.order(best):
-                heapq.heappush(breakers, (state.order(best), best))  # the activation's rule has run meanwhile
+                heapq.heappush(breakers, (state.order(best), best))  # its utility has changed since
                 continue
             freed = no_longer_stuck(best, stuck)
             if not found.issuperset(freed):  # a change after the search has freed activations, so search again
@@ -258,7 +258,7 @@ def _is_taken(activation: Activation) -> bool:
 
 
 def _presses(activations: Iterable[Activation]) -> bool:
-    """Return whether one of the activations counts for ``core:pressure``: it hears no built-in flag."""
+    """Return whether one of the activations hears no built-in flag, and so counts for ``core:pressure``."""
     for activation in activations:
         if not activation.clause.reflexive:
             return True

@@ -1,5 +1,7 @@
-"""A bench: spikes of a half (``halves.py``) that wait together for a second spike, their counterpart
-(``benches.py``)."""
+"""A bench: first spikes of clauses with two constraints. They wait together for a second spike, their *counterpart*.
+
+A *half* keeps such first spikes without activations (``halves.py``). ``benches.py`` explains the use of benches.
+"""
 
 from __future__ import annotations
 
@@ -14,7 +16,7 @@ class Bench:
 
     Attributes:
         half: The half.
-        spikes: The spikes, oldest first. Each has a number *n*: its activations get the numbers from *n* + 1 on.
+        spikes: The spikes, oldest first. Each has a number *n*: if it gets activations, they are numbered from *n* + 1.
         partner: The counterpart, or None if the spikes lack one.
         late: The spikes that became too old for the half while they had a counterpart.
     """

@@ -30,7 +30,7 @@ if TYPE_CHECKING:
 
 
 class Benches:
-    """The part of the engine that gives counterparts to benches, and makes the activations of their heads."""
+    """The part of the engine that gives each bench a counterpart, and creates the benches' heads."""
 
     __slots__ = ("holdings", "state")
 

@@ -93,7 +93,9 @@ class Consent:
             if self._judge_rival(refusal, horizon, rival, members, group, activation, commit=commit):
                 eliminated = True
         if eliminated and refusal.names:
-            return self.ask(activation, stuck)  # the verdict on an earlier rival may depend on the eliminated rival
+            return self.ask(
+                activation, stuck
+            )  # the verdict on an earlier rival may have depended on the eliminated one
         if asks and refusal.names and not refusal.taken:
             self.leaders.add(activation)
         if horizon is not None:
@@ -128,7 +130,7 @@ class Consent:
         for member in (*living, None):
             if member is None:
                 if outside:
-                    break  # an activation waits for the spike and takes it first, so the stand-by is no rival
+                    break  # that activation would take the spike first, so the stand-by is no rival
             elif member.state >= RUNNING or horizon.is_inert(member) or _is_covered(member, sure):
                 continue
             strength, roots = horizon.judge(rival, member, group)
@@ -186,7 +188,7 @@ class Consent:
         return False
 
     def _is_held_beside(self, half: Half, spike: Spike) -> bool:
-        """Return whether an activation holds a spike that the half holds for the activation's clause, too."""
+        """Return whether some clause holds the spike twice: in the half, and in an activation."""
         for holder in spike.holders:
             rank = half.rank.get(holder.clause.index)
             if rank is not None and self.state.keeps(half.best[rank], spike):
@@ -309,7 +311,7 @@ class Consent:
             for other in list(spike.holders) if self.state.alternatives else ():
                 queue = self.state.alternatives.get(other)
                 if queue is not None and any([clause.rule is rival.clause.rule for clause in queue[0]]):
-                    self.halves.sets.unfold(other)  # later, this rule's alternatives could not take the refused spike
+                    self.halves.sets.unfold(other)  # now: an alternative takes no spike that its rule gave up
             self.holdings.entries.refuse_for_good(spike, rival.clause.rule)
         self.holdings.end(rival, "eliminated")
 

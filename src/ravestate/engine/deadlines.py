@@ -1,6 +1,8 @@
 """The deadlines, in one heap. An entry becomes stale when its owner gets another deadline, or no longer needs one.
 
 `Deadlines` knows which entries still count. ``parts.py`` has a table, `DUE`, of handlers for entries that are due.
+
+A *need* is one constraint of a clause. A detached need looks at a spike without consuming it.
 """
 
 from __future__ import annotations
@@ -23,7 +25,7 @@ class Kind(enum.IntEnum):
     LOOK = 1  # a spike is old enough for a detached need
     RECHECK = 2  # a reason to wait may end at this time (`Refusal.recheck`)
     PATIENCE = 3  # the patience of a pressured activation ends
-    EXPIRE = 4  # a spike is too old for an incomplete activation, or for a half (halves.py)
+    EXPIRE = 4  # a spike is too old for an incomplete activation, or for a half (``halves.py``)
     FORGET = 5  # a spike is too old for every detached need
     TIMEOUT = 6  # a run times out
     WATCH = 7  # the spikes of an `until` condition are old enough

@@ -51,7 +51,7 @@ class Engine:
 
     def __init__(self, policy: Policy, *, patience: float = DEFAULT_PATIENCE, report_ends: bool = False) -> None:
         self.policy = policy
-        """The policy; it has more rules after each `AddRule`."""
+        """The policy. Each event `AddRule` replaces it by a policy with more rules."""
         self._memory = Memory(policy, patience, report_ends)
         self._parts: Parts | None = None
 
@@ -174,7 +174,7 @@ class Engine:
 
     @property
     def late_turns(self) -> int:
-        """The number of deferred turns that endless loops have had in this instant, after all other rules (L23)."""
+        """The number of deferred turns in this instant of loops that an error has named (`Loops.late`, L23)."""
         return 0 if self._parts is None else self._parts.state.loops.late
 
     def read(self, slot: int) -> Any:

@@ -1,6 +1,9 @@
-"""Live spikes, and the entries of the halves (``halves.py``): the spikes that halves hold without an activation.
+"""The tables of live spikes and of *halves* (laws L12, L14, L23).
 
-See laws L12, L14 and L23.
+A clause with two constraints, its *needs*, takes two spikes. A half keeps the first spike, without an activation, until
+the second spike comes. One half does this for all clauses that the engine can treat alike (``halves.py``). An *entry*
+is a spike that a half keeps. A *bench* is a list of entries that share their second spike, the *counterpart*
+(``benches.py``).
 """
 
 from __future__ import annotations
@@ -25,7 +28,7 @@ class Entries:
         self.state = state
 
     def enter(self, spike: Spike, half: Half, before: int) -> None:
-        """Let a half hold a spike. The spike's activations get the numbers from `before` + 1 on."""
+        """Let a half hold a spike. If the spike gets activations later, they are numbered from `before` + 1."""
         state = self.state
         held = state.halves.get(half)
         if held is None:
@@ -45,7 +48,7 @@ class Entries:
             self.let_expire(spike, spike.born + half.max_age)
 
     def part(self, spike: Spike, need: Need) -> None:
-        """Record that the need's half no longer holds a spike for the need's clause."""
+        """Make a half give a spike up for one clause, that of `need`. If no clause is left, drop the spike."""
         half = need.half
         if half is None or self.state.entries(half, spike) is None:
             return

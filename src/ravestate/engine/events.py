@@ -1,4 +1,4 @@
-"""Events: the inputs of an engine. A closed union of records; the journal keeps them, and a replay feeds them again."""
+"""Events: the inputs of an engine. A closed union of records; a journal keeps them for a replay."""
 
 from __future__ import annotations
 
@@ -77,7 +77,7 @@ class Finish:
 
 @dataclass(slots=True)
 class AddRule:
-    """The context gets a policy with more rules; it has all rules of the present policy, too."""
+    """The context gets a new policy, which has all rules of the present policy and at least one more."""
 
     policy: Policy
 

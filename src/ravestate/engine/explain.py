@@ -224,7 +224,8 @@ def stand_ins(state: State) -> dict[int, list[Activation]]:
 def words_of(record: Record, others: str = "", behind: str = "") -> str:
     """Return a phrase that says what a record means for its rule; empty for a record without a rule.
 
-    `others` describes the rules that the rule waits for; `behind` is the rule that raised the answering rule's input.
+    `others` describes the rules that the rule waits for. If another rule answered the spike, `behind` is the rule that
+    raised that other rule's signal.
     """
     match record:
         case Held():

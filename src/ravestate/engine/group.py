@@ -44,7 +44,7 @@ NO_NUMBERS: Final[frozenset[int]] = frozenset()
 
 
 class Group:
-    """The slots that are taken in a group, and the activations that have a stake in it.
+    """The slots that are taken in a group, and the activations that hold its spikes or wait in it.
 
     Attributes:
         taken: Key: the number of a slot that is taken in the group; value: the runs that hold the slot, or None if a
@@ -55,7 +55,7 @@ class Group:
             (`State.dirty`).
         patience_ends: The rivals under pressure that have no activation yet (L16). Key: the number of the rival's
             clause; value: the time (seconds) at which the rival's patience ends, possibly in the past.
-        roster: The members of a large group by slot and by rule (``roster.py``); None until a question needs them.
+        roster: The members of a large group by slot and by rule (``roster.py``); None until a question needs it.
         answers: Key: the number of a slot; value: the rule that first finished with the slot, and the number of that
             rule's activation. The engine fills this table only while there is a tracer.
     """

@@ -13,7 +13,7 @@ number of activations depends on the rule:
   (``benches.py``)
 - for any other rule: one activation with each first spike, because consent chooses one of them
 - for a rule that was added while a spike of its signals was live: also one activation with each first spike, because
-  each activation may lose a spike and then take that older spike
+  each activation may later lose a spike, and take that live spike instead
 
 To *unfold* an entry is to make its activations. All entries unfold if there is a tracer, and when a rule retires or is
 added. The entries of a group unfold before the group merges. `Consent` unfolds an entry to judge its clauses one by
@@ -116,9 +116,11 @@ class Halves:
     def share(self, policy: Policy) -> None:
         """Create the activations that `_pair` left out, for clauses whose needs are kin only under a new policy.
 
-        So far, an activation that lost a spike took the oldest live spike, so the other activations could form the
-        missing pairs. From now on, such an activation may only take a spike of the same causal group (law L12). So each
-        spike gets its own activation, with the first counterpart that came later.
+        Kin needs may only hold spikes of one causal group.
+
+        Under the old policy, an activation that lost a spike took the oldest live spike, and so formed the missing
+        pairs. Under the new one, it may only take a spike of the same causal group (law L12). So each spike gets an
+        activation, with the first counterpart that came later.
         """
         for activations in list(self.state.active.values()):
             clause = next(iter(activations)).clause

@@ -1,4 +1,7 @@
-"""Holdings: activations take spikes and give them up, and so become ready or end (laws L12, L14, L20, L23)."""
+"""Holdings: activations take spikes and give them up, and so become ready or end (laws L12, L14, L20, L23).
+
+A *need* is one constraint of a clause: one spike meets it. A detached need looks at a spike without consuming it.
+"""
 
 from __future__ import annotations
 
@@ -55,7 +58,7 @@ class Holdings:
         return activation
 
     def put_under_pressure(self, activation: Activation, group: Group, until: float) -> None:
-        """Give a new activation a patience in a group: its stand-by or entry was already under pressure there (L16)."""
+        """Give a new activation a patience in a group where its stand-by or entry was already under pressure (L16)."""
         activation.patience_ends = {group: until}
         if until > self.state.now:
             self.state.deadlines.add(until, PATIENCE, (group, activation))
@@ -118,7 +121,7 @@ class Holdings:
                 self.acquire(activation, need, best)
 
     def swap(self, activation: Activation, need: Need, spike: Spike) -> None:
-        """Let a detached need hold another spike."""
+        """Give a need another spike in place of its present one."""
         self._release(activation, need, "")
         self.acquire(activation, need, spike)
         if activation.state == GATHERING:
@@ -224,8 +227,8 @@ class Holdings:
     def lose(self, activation: Activation, needs: Iterable[Need], reason: str, by: Activation | None = None) -> None:
         """Make an activation give up the spikes of `needs`, and end it if nothing keeps it alive.
 
-        A non-detached spike keeps it alive. If all needs of its clause are detached, any spike does. `by` is the run
-        that is the cause, or None.
+        A non-detached spike keeps an activation alive. If all needs of its clause are detached, any spike does. `by` is
+        the run that is the cause, or None.
         """
         needs = [need for need in needs if not need.bit & activation.missing]
         if not needs:
@@ -262,9 +265,9 @@ class Holdings:
         self.lose(activation, needs, reason, by)
 
     def give_up(self, run: Activation, reason: str) -> None:
-        """Make all other activations of a run's rule give up the run's non-detached spikes for good."""
+        """Make all other activations of a run's rule give up the run's non-detached spikes, forever."""
         rule = run.clause.rule
-        for spike in run.stands_on:  # refuse all first: an activation that loses a spike immediately takes another
+        for spike in run.stands_on:  # refuse all first, because an activation that loses one takes another
             self.benches.unbench(spike)
             self.entries.refuse_for_good(spike, rule)
         for spike in run.stands_on:

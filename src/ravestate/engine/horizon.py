@@ -1,4 +1,4 @@
-"""The horizon (law L16): whether the missing constraints of a rival may yet be met.
+"""The horizon (law L16): whether the missing constraints (*needs*) of a rival may yet be met.
 
 The horizon of a group is the set of signals that rules of the group may yet cause. A rule may cause a signal if the rule
 runs, or if its constraints are met or may yet be met. So a signal depends on other signals: the horizon is a least fixed
@@ -65,7 +65,7 @@ class Horizon:
         visited: The groups on whose state the results depend.
         hopes: Key: a kind (``activation.py``), and the number of a rule or signal whose change may change the results;
             value: a count. For `OUTSIDE`, the count is a limit: the change of an activation matters only if its rule
-            has at most that many other activations. For other kinds, it is 0.
+            has at most that many other activations. For other kinds, the count is 0.
         recheck: The earliest time (seconds) at which a spike that the results need reaches its maximum age.
     """
 
@@ -126,7 +126,7 @@ class Horizon:
         """Discard all derivations that may rest on an activation that is about to end."""
         rule = activation.clause.rule
         if self.state.causes.helpful.isdisjoint(rule.raises):
-            return  # no derivation rests on it
+            return  # no derivation rests on this activation
         self._known.clear()
         self._far.clear()
         self._inert = None

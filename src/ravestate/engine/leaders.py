@@ -35,7 +35,7 @@ class Leader:
 
     def __init__(self, activation: Activation) -> None:
         self.activation = activation
-        self.known = False  # whether the two attributes below are known: the first follower needs them
+        self.known = False  # whether `next` and `recovering` are known; the first follower needs them
         self.next: Clause | None = None
         self.recovering: list[Clause] = []
 

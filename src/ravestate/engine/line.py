@@ -1,4 +1,4 @@
-"""A line: places in order. Most places join in one batch or return to the front, so that no search is needed."""
+"""A line: a queue of ordered places. Most places join in one batch or return to the front, so it rarely searches."""
 
 from __future__ import annotations
 

@@ -12,7 +12,7 @@ class Loop:
 
     Attributes:
         instant: The number of the instant.
-        turns: How many of the runs were further turns of the loop.
+        turns: How many of the runs were further turns of the loop (``loops.py``).
         rules: The rules that had these further turns.
     """
 

@@ -1,6 +1,6 @@
-"""Matching: each new spike joins a causal group, and is offered to the activations that lack it.
+"""Matching: each new spike joins a causal group, and is offered to the activations that lack it (laws L11, L12, L19).
 
-See laws L11, L12 and L19.
+A *need* is one constraint of a clause: one spike meets it. A detached need looks at a spike without consuming it.
 """
 
 from __future__ import annotations
@@ -84,8 +84,9 @@ class Matching:
         return root
 
     def _offer_again(self, group: Group) -> None:
-        """Offer the spikes of a merged group again, oldest first: coherence kept some of them apart until now (L12).
+        """Offer the spikes of a merged group again, oldest first.
 
+        Some needs of a clause may only hold spikes of one group (L12). Until now, this kept some of these spikes apart.
         As at its birth, a spike is offered only to activations that are older than itself, oldest first.
         """
         state, holdings = self.state, self.holdings

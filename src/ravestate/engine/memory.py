@@ -16,7 +16,7 @@ PASSIVE = (int, float, str, bytes, bool, type(None), MappingProxyType)
 class Memory:
     """The slots and counters of an engine, and notes about its rules.
 
-    An engine at rest has nothing else. In a working engine, these are in the `State`.
+    An engine at rest has nothing else. In a working engine, the `State` has this data.
 
     Args:
         policy: A policy from ``rs.compile``.
@@ -54,7 +54,7 @@ class Memory:
         """Key: the number of a collection that was not read since its last change; value: its items, which a
         write may change without a copy."""
         self.ran: dict[int, float] = NOTHING
-        """Number of a rule with a cooldown → the time of its last run (seconds)."""
+        """Number of a rule with a cooldown → the end of its last run that fired (seconds)."""
         self.retired = NO_NUMBERS
         """The numbers of the rules that have retired."""
         self.dropped: dict[str, int] = NOTHING

@@ -35,7 +35,7 @@ OUTCOMES: dict[tuple[str, str], tuple[End, End]] = {
     (TIMEOUT, RESIGNED): ((FAILED, False), (FAILED, True)),
     (TIMEOUT, FAILED): ((FAILED, False), (FAILED, True)),
     (TIMEOUT, RETIRED): ((FAILED, False), (FAILED, True)),
-    # A run that is wiped before it wrote a slot has answered nothing: other rules may answer the remaining spikes.
+    # A run that is wiped before it writes a slot has answered nothing: other rules may answer the remaining spikes.
     (WIPED, DONE): ((WIPED, False), (WIPED, True)),
     (WIPED, RESIGNED): ((WIPED, False), (FAILED, True)),
     (WIPED, FAILED): ((FAILED, False), (FAILED, True)),

@@ -1,5 +1,7 @@
-"""A row: an ordered list of the spikes of a half (``halves.py``). In it, each clause of the half finds its spikes
-fast."""
+"""A row: an index of the spikes that a half holds, so that each clause of the half finds its spikes fast.
+
+A *half* keeps the first spikes of clauses with two constraints, until the second spikes come (``halves.py``).
+"""
 
 from __future__ import annotations
 

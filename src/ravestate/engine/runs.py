@@ -186,7 +186,10 @@ class Runs:
             del self.state.watches[watch.clause]
 
     def _consume(self, run: Activation) -> None:
-        """Settle a run as Done (L18): consume its slots in its groups; make the slots' other writers give up the spikes."""
+        """Settle a run as Done (L18): consume its slots in its groups.
+
+        Other writers of these slots give up their spikes of these groups.
+        """
         state = self.state
         rule = run.clause.rule
         if not rule.slots:
@@ -216,8 +219,11 @@ class Runs:
             state.dirty[group] = None
 
     def _relinquish(self, run: Activation) -> None:
-        """Settle Resign, or Error before a write (L18): free the run's slots, make its rule give up the run's spikes,
-        and let the next alternative (``conflict_sets.py``) ask."""
+        """Settle a run that resigned, or failed before a write (L18).
+
+        Free the run's slots, make its rule give up the run's spikes, and let the next alternative
+        (``conflict_sets.py``) ask.
+        """
         for group in _roots(run):
             for slot in run.clause.rule.slots:
                 group.free(slot, run)
@@ -238,8 +244,8 @@ def _roots(run: Activation) -> list[Group]:
 
 
 def _handles_error(run: Activation) -> bool:
-    """Return whether a run holds a spike of ``core:error`` or a descendant. If so, its failure does not raise
-    ``core:error`` again."""
+    """Return whether a run holds a spike of ``core:error``, or a descendant of one. If so, a failure of the run does
+    not raise ``core:error`` again."""
     return any(spike is not None and spike.comes_from("core:error") for spike in run.spikes)
 
 
@@ -248,6 +254,6 @@ def _endless(rules: Sequence[RulePlan]) -> str:
     names = ", ".join(rule.name for rule in rules)
     whom = "each other" if len(rules) > 1 else "itself"
     return (
-        f"an endless loop: {names} triggered {whom} {MANY + TURNS:,} times within one instant; write "
-        ".min_age(seconds) after a signal of the loop, so that time passes"
+        f"an endless loop: {names} triggered {whom} {MANY + TURNS:,} times within one instant; add "
+        ".min_age(seconds) to a signal of the loop, so that time passes"
     )

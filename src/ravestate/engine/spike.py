@@ -20,13 +20,14 @@ class Spike:
     Attributes:
         rule: The number of the rule that raised the spike; -1 if code outside the rules or a detached rule raised it.
         before: The number of the youngest activation that is older than the spike.
-        lineage: The rules that led to the spike. Only kept in an instant with many runs (L23).
+        lineage: The rules that led to the spike. Kept only in an instant with many runs (L23).
         holder: One of the activations that hold the spike, or None. Most spikes never have a second holder, and need no
             table.
         expiring: The times at which incomplete holders give the spike up because of its age (seconds).
-        in_halves: How many halves hold the spike without an activation (``halves.py``).
-        parted: The numbers of the clauses for which these halves do not hold the spike: the clause gave it up, or has
-            an activation that holds it.
+        in_halves: How many halves hold the spike (``halves.py``). A half keeps first spikes for clauses that have no
+            activation yet.
+        parted: The numbers of the clauses for which these halves do not hold the spike. Such a clause gave it up, or
+            has an activation that holds it.
         refused: The numbers of the rules that gave the spike up for good.
     """
 
@@ -113,7 +114,7 @@ class Spike:
         self.refused.add(rule)
 
     def descends_from(self, rule: int) -> bool:
-        """Return whether a run of the rule is among the spike's causes; the rule then may not take it (L19)."""
+        """Return whether a run of the rule is among the spike's causes. If so, the rule may not take it (L19)."""
         return any(spike.rule == rule for spike in self._lineage())
 
     def comes_from(self, signal: str) -> bool:

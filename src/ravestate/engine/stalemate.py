@@ -58,7 +58,7 @@ def stalemate(consent: Consent, refused: Iterable[Activation], known: Stuck | No
 def no_longer_stuck(one: Activation, stuck: Stuck) -> list[Activation]:
     """Return the members of a stalemate that by now wait for an activation outside the stalemate, oldest first.
 
-    Only `one` and the members for which it waits, directly or through others, are searched.
+    The search covers only `one` and the members for which it waits, directly or through others.
     """
     seen: set[Activation] = set()
     reached = [one]

@@ -1,8 +1,8 @@
 """Standing: the order of clauses by effective utility, now and later (laws L9, L15).
 
-The effective utility of a clause is its utility x weight x recovery. After a run, recovery climbs from 0 to 1 over the
-rule's cooldown. If both utilities are 0, weight x recovery decides. If two clauses are equal, the one declared first is
-ahead.
+The effective utility of a clause is its utility x weight x recovery. After a run that fired, recovery climbs from 0 to
+1 over the rule's cooldown. If both utilities are 0, weight x recovery decides. If two clauses are equal, the one
+declared first is ahead.
 """
 
 from __future__ import annotations
@@ -23,7 +23,7 @@ INSTANT = 0.5e-9
 
 
 class Standing:
-    """The effective utilities of clauses at an engine's present moment; `ran` has the times of the rules' last runs."""
+    """The effective utilities of clauses at an engine's present moment; `ran` is `Memory.ran`."""
 
     __slots__ = ("now", "ran")
 

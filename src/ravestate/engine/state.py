@@ -3,6 +3,9 @@
 An event finds its spikes and activations without a search: live spikes by signal, activations by rule, and incomplete
 activations by the need that they lack. So the cost of an event does not grow with the number of rules.
 
+The tables use three words. A *need* is one constraint of a clause. A *half* keeps first spikes for clauses with two
+needs (``halves.py``). A *bench* joins such spikes that share their second spike (``benches.py``).
+
 The parts of the engine share one state. Only `State.adopt` and these files change its tables:
 
 - `active`: ``holdings.py``
@@ -157,7 +160,7 @@ class State(Memory):
         self.stirred: dict[tuple[int, int], None] = NOTHING
         """The hopes that have changed. The activations that have them ask again (`Waits.wake`)."""
         self.alternatives: dict[Activation, tuple[tuple[Clause, ...], int, int]] = NOTHING
-        """Key: the activation of the best clause of a conflict set (``conflict_sets.py``). Value: the clauses of the
+        """Key: the present activation of a conflict set (``conflict_sets.py``). Value: the clauses of the
         set, how many of them have had an activation, and a number *n*. Their activations get the numbers from *n* + 1
         on."""
         self.running: dict[int, Activation] = {}
@@ -178,7 +181,7 @@ class State(Memory):
         predicate, the predicate, and the exception."""
         self.loops = Loops(self)
         self.busy = 0
-        """How many activations count for ``core:activity``."""
+        """How many activations, and spikes in halves, count for ``core:activity``."""
         self.added = 0
         """The number of the newest spike at the time when a rule was last added."""
 
@@ -274,12 +277,12 @@ class State(Memory):
         return None if seats is None else seats.get(spike)
 
     def keeps(self, need: Need, spike: Spike) -> bool:
-        """Return whether the need's half holds a spike for the need's clause."""
+        """Return whether a half holds a spike for one of its clauses, that of `need`."""
         held = self.entries(need.half, spike) if need.half is not None else None
         return held is not None and not (spike.parted and need.clause.index in spike.parted)
 
     def entry_number(self, need: Need, spike: Spike) -> int:
-        """Return the number that an activation gets if the need's half unfolds a spike into activations."""
+        """Return the number that the activation of `need` gets if the need's half makes activations of a spike."""
         half = need.half
         assert half is not None
         held = self.entries(half, spike)

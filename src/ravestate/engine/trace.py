@@ -84,7 +84,8 @@ class GaveUp:
 class Passed:
     """A rule did not take a spike.
 
-    The spike's ``payload`` did not fit, its cause was ``consumed``, or the rule itself had ``caused`` the spike.
+    ``reason`` is a `PassReason`: the spike's ``payload`` did not fit, its cause was ``consumed``, or the rule itself
+    had ``caused`` the spike.
     """
 
     time: float

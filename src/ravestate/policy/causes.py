@@ -50,7 +50,7 @@ class Causes:
         self._wide: dict[int, frozenset[int]] = {}
         self._downstream: dict[int, tuple[Clause, ...]] = {}
         self._behind: dict[int, frozenset[int]] = {}
-        self._parts: list[int] | None = None  # root → the first root of its part
+        self._parts: list[int] | None = None  # root → the first root of its part (`parts`)
         self._contested: frozenset[int] | None = None
         self._helpful: frozenset[int] | None = None
 

@@ -30,8 +30,8 @@ class Completion:
         alternatives: Place → the signal's alternatives, each a tuple of places.
         bare: Place → whether a pathway may hold the signal without its causes, by the empty alternative.
         information: Place → the self-information of the signal (L9), in units (`UNIT`).
-        components: Groups of places on common cycles, after bare signals are cut off from their causes. Causes come
-        first.
+        components: Groups of places on common cycles; causes come first. For these cycles, `bare` signals count as
+            signals without causes.
         cycle: Place → the set of signals on a cycle with the signal; 0 if the signal is on no cycle.
     """
 
@@ -50,7 +50,7 @@ class Completion:
         ]
         counts = _counts(signals, rules, causes)
         self.information = [round(-math.log(counts[s] / len(rules)) * UNIT) if counts[s] else 0 for s in order]
-        self._alike: dict[int, int] = {}  # information value -> the set of signals that have it
+        self._alike: dict[int, int] = {}  # information → the set of signals that have it
         for place, information in enumerate(self.information):
             self._alike[information] = self._alike.get(information, 0) | 1 << place
         self._signals: list[Signal[object]] = [signals[s].signal for s in order]

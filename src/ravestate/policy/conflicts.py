@@ -18,8 +18,8 @@ class Conflict:
         slots: The names of the slots that both rules write.
         causes: The names of the signals that lie on pathways of both rules.
         winner: The name of the rule that goes first if both are ready and recovered.
-        margin: The winner's lead in utility x weight (nats). It is 0 if both utilities are 0, even if the weights
-            differ and so decide which rule wins.
+        margin: The winner's lead in utility x weight (nats). If both utilities are 0, the lead is 0, although the
+            weights may decide which rule wins.
         tie: Whether only the order of declaration decides, because neither rule is ahead.
     """
 
@@ -78,7 +78,8 @@ class Conflicts:
         return found
 
     def best(self, first: RulePlan, second: RulePlan) -> tuple[Clause, Clause] | None:
-        """Return each rule's best clause among those that share a root with the other rule; None without a conflict."""
+        """Return each rule's best clause among those that share a root with the other rule; None if the rules do not
+        conflict."""
         if first.slotset.isdisjoint(second.slotset):
             return None
         common = self._of_rule(first) & self._of_rule(second)

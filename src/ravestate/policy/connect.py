@@ -1,4 +1,7 @@
-"""The relations between the records of a policy: listeners, coherent needs, conflict sets, halves."""
+"""The relations between the records of a policy: listeners, kin needs, conflict sets and halves.
+
+A *need* is one constraint of a clause. The functions explain the other terms.
+"""
 
 from __future__ import annotations
 
@@ -38,7 +41,7 @@ def connect(signals: Sequence[SignalPlan], slots: Iterable[SlotPlan], rules: Ite
 def find_kin(rules: Iterable[RulePlan], causes: Causes) -> None:
     """Set the kin of each need: the needs of its clause that must hold spikes of the same causal group (L12).
 
-    Needs are kin if their pathways share a signal.
+    Needs are kin if their pathways share a signal, or if their signals belong to one slot. Kin of kin are kin, too.
     """
     for rule in rules:
         for clause in rule.clauses:
@@ -62,9 +65,9 @@ def find_kin(rules: Iterable[RulePlan], causes: Causes) -> None:
 
 
 def find_unrivalled(rules: Iterable[RulePlan]) -> None:
-    """Mark the clauses that always go before all other writers of their slots.
+    """Mark the clauses that always go before all other clauses that write one of their slots.
 
-    If a writer of a slot has a cooldown, its utility changes over time. So no clause that writes this slot is marked.
+    The utility of a rule with a cooldown changes over time. So no clause that writes a slot of this rule is marked.
     """
     best: dict[int, Clause] = {}
     changing: set[int] = set()
@@ -85,12 +88,12 @@ def find_conflict_sets(signals: Sequence[SignalPlan], causes: Causes) -> None:
     """Set the conflict sets of each signal: the clauses that compete for each of its spikes, in a fixed order.
 
     One spike of the signal makes such a clause ready. The clauses write the same slots, and their order never changes.
-    So the first clause goes before the others. Only if its run resigns or fails does the engine need an activation of
-    the next clause (``engine/conflict_sets.py``).
+    So the first clause goes before the others. The engine needs an activation of the next clause only if the run of
+    the first resigns or fails (``engine/conflict_sets.py``).
 
     A signal is *helpful* if it leads to a rule that writes a slot, or to a slot predicate (`Causes.helpful`). A clause
     belongs to no conflict set if its rule may raise a helpful signal. Other activations may have to wait for that
-    signal (L16). They can only wait for an activation, so such a clause always gets one.
+    signal (L16), and they can only wait for an activation. So such a clause always gets an activation.
     """
     helpful = causes.helpful
     for signal in signals:

@@ -32,8 +32,8 @@ class Finding:
         kind: ``"undeclared"``, ``"unknown"``, ``"await"``, ``"unreachable"``, ``"unraised"``, ``"loop"``,
             ``"never-wins"``, ``"tie"``, ``"cooldown"`` or ``"unheard"``.
         subject: The qualified name of the rule or signal.
-        message: The remark, with the text to write instead.
-        rules: For ``"unraised"``, the names of the rules that wait for the signal; else empty.
+        message: The remark. It says what to change.
+        rules: The names of the rules that wait for the signal, if the kind is ``"unraised"``; else empty.
     """
 
     kind: str
@@ -119,14 +119,14 @@ def _unreachable(policy: Plans) -> Iterator[Finding]:
             yield Finding(
                 "unreachable",
                 rule.name,
-                f"rule {rule.name} waits for an effect of rules that write {slots} before it, and a causal group allows "
-                "only one write of a slot (L19): add .detached() to the signal that it waits for, or detached=True to "
-                "the rule that raises this signal",
+                f"rule {rule.name} waits for a signal that only other writers of {slots} raise, and a causal group "
+                "allows only one write of a slot (L19): add .detached() to this signal, or detached=True to the rule "
+                "that raises it",
             )
 
 
 def _starves(policy: Plans, clause: Clause, known: dict[tuple[int, frozenset[int]], bool]) -> bool:
-    """Return whether a signal of the clause comes only from rules that write a slot of the clause, too."""
+    """Return whether a signal of the clause comes only from rules that write one of the clause's slots."""
     slots = clause.rule.slotset
     for need in clause.needs:
         if need.detached or need.signal.input:
@@ -237,7 +237,7 @@ def _ties(policy: Plans) -> Iterator[Finding]:
 
 
 def _apart(first: RulePlan, second: RulePlan) -> bool:
-    """Return whether the two rules have different predicates on the same signal, so that the payload decides."""
+    """Return whether two rules have different predicates on the same signal, so that the payload decides which runs."""
     mine = {need.signal.index: need.predicates for clause in first.clauses for need in clause.needs}
     theirs = {need.signal.index: need.predicates for clause in second.clauses for need in clause.needs}
     return any(mine[s] and theirs[s] and mine[s] != theirs[s] for s in mine.keys() & theirs.keys())

@@ -1,13 +1,14 @@
 """The least pathway of a clause (law L9): the pathway with the least information.
 
 An *alternative* of a signal is a set of signals that together may cause it. A pathway is a set that holds an
-alternative of each of its signals (`Completion`). Its *cost* is its information.
+alternative of each of its signals. Its *cost* is its information. A set of signals is an integer with one bit for each
+signal; `Completion` gives each signal its *place*, the number of this bit.
 
 The search begins with the clause's own signals. Among the signals that lack an alternative, each step takes the signal
-with the highest bit, and tries each alternative of this signal. Two sets may agree in all signals that further steps
-can reach. Then these steps are the same for both sets, so the search follows only the cheaper set. Therefore
-independent choices do not multiply. The search for a signal uses the least pathways of its causes. If the causes form a
-chain, a ring or a tree, the search takes one or two steps.
+with the highest bit, and tries each alternative of this signal. If two sets agree in all signals that further steps can
+reach, these steps are the same for both. So the search follows only the cheaper set, and independent choices do not
+multiply. The search for a signal uses the least pathways of its causes. If the causes form a chain, a ring or a tree,
+the search takes one or two steps.
 
 If alternatives have causes in common, the search is a weighted set cover problem, for which no quick method is known.
 If a step leaves too many sets, the search follows only the cheapest sets, and the result may be too high. That happens
@@ -43,11 +44,11 @@ class Least:
         self._price = completion.information[:]
         """Signal → the information of its set in `_whole`."""
         self._reach: dict[int, int] = {}
-        """Signal with an open signal on its pathways → the union of its pathways."""
+        """Signal that has an open signal on its pathways → the union of its pathways."""
         self._masks: dict[int, list[int]] = {}
         """Open signal → its alternatives as sets."""
         self._known: dict[int, tuple[int, int]] = {}
-        """Set of signals that further steps may reach → the cost and the signals that its completion adds."""
+        """Set of signals that further steps may reach → the cost of its completion, and the signals that this adds."""
         self._follow()
         for members in completion.components:
             self._settle([place for place in members if not completion.bare[place]])

@@ -24,7 +24,7 @@ from ravestate.policy.plans import Plans
 QUICK = (Signal, Slot, Module, Condition, str, int, float, tuple, NoneType)
 """Types of values that take no time to use."""
 
-HOME = "ravestate"  # the content of Python modules whose names start with this takes no time to use
+HOME = "ravestate"  # a Python module whose name starts with this counts as taking no time to use
 
 
 def endless_loops(policy: Plans) -> Iterator[tuple[list[RulePlan], list[str]]]:
@@ -83,7 +83,8 @@ def _fed(policy: Plans, clauses: list[Clause]) -> list[Clause]:
 
 
 def _wanted(clause: Clause) -> list[Need]:
-    """Return the clause's needs that take a new spike for each run. A detached need beside them may reuse its spike."""
+    """Return the needs of a clause that take a new spike for each run: the non-detached needs, or all if all are
+    detached."""
     return [need for need in clause.needs if not need.detached] or list(clause.needs)
 
 

@@ -1,8 +1,8 @@
 """The records of a policy: the numbered form of what a designer declares.
 
 The compiler gives each signal, slot, rule and clause a number, in declaration order, and fills in the records. Nothing
-changes the records afterwards, so any number of engines share them. A signal's record lists the needs that hear it. So
-the cost of a spike depends on the rules that hear its signal, never on the number of all rules.
+changes the records afterwards, so any number of engines share them. A signal's record lists its listeners: the needs
+(constraints of clauses) that hear it. So the cost of a spike depends only on the rules that hear its signal.
 """
 
 from __future__ import annotations
@@ -111,7 +111,7 @@ class Need:
     kin: int = field(init=False)
     """The bits of this need and of the needs that must hold spikes of the same causal group (L12)."""
     half: Half | None = field(init=False, default=None)
-    """The half to which the need belongs, if the clause needs no activation until both of its needs are met."""
+    """The need's `Half`, if the clause gets no activation until both of its needs are met; else None."""
 
     def __post_init__(self) -> None:
         self.bit = self.kin = 1 << self.index
@@ -202,9 +202,9 @@ class RulePlan:
 
 @dataclass(slots=True, eq=False, repr=False)
 class Half:
-    """Needs for one signal; the engine treats them alike. Each need belongs to a clause with two needs.
+    """A set of needs for one signal that the engine treats alike. Each belongs to a clause with two needs.
 
-    The half holds the first spike of such a clause without an activation.
+    The half holds the first spike of such a clause without an activation (``engine/halves.py``).
 
     Attributes:
         needs: The needs, in declaration order.

@@ -59,7 +59,7 @@ class Names:
 
     def twice(self, what: str, name: str, first: str, second: str) -> None:
         """Add the fault that two signals, slots or rules (`what`), declared at `first` and `second`, share a name."""
-        if self._modules[name.split(":")[0]] < 2:  # two modules with one name are a fault reported elsewhere
+        if self._modules[name.split(":")[0]] < 2:  # `_in_order` reports two modules with one name
             self.faults.append(f"two {what}s are named {name!r}: {first} and {second}; rename one")
 
     def signal(self, signal: Signal[Any], where: str) -> SignalPlan | None:
@@ -71,7 +71,7 @@ class Names:
         return None
 
     def slot(self, slot: Slot[Any], where: str) -> SlotPlan | None:
-        """Return the record of a slot. For the arguments and faults, see `signal`."""
+        """Return the record of a slot. Otherwise, this is like `signal`."""
         plan = self._slot_of.get(slot.name)
         if plan is not None and plan.slot is slot:
             return plan

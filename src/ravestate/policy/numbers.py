@@ -16,7 +16,8 @@ from ravestate.errors import nearest
 class Numbers:
     """Checks the numbers in rules, and replaces settings with their values.
 
-    It adds numbers out of range, and missing settings, to `faults`. `refers` is true if a rule refers to a setting.
+    It adds a fault to `faults` for each number out of range, and for each missing setting. `refers` is true if a rule
+    refers to a setting.
     """
 
     def __init__(self, modules: Sequence[Module], settings: Mapping[str, Any], faults: list[str]) -> None:

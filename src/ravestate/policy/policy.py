@@ -95,14 +95,14 @@ class Policy(Plans):
         return find_conflicts(self)
 
     def findings(self, source: Source | None = None) -> tuple[Finding, ...]:
-        """Return remarks on probable mistakes: rules that cannot run or win, endless loops, ties, signals without
-        listeners.
+        """Return remarks on probable mistakes, such as rules that cannot run or win, endless loops and ties.
 
-        A rule has at most one finding of each kind. If several rules tie with it, the finding names the first of them.
+        `Finding` lists all kinds. A rule has at most one finding of each kind. If it ties with several rules, the
+        finding names the first of these.
 
         Args:
             source: A function that returns the source of a rule's function, such as ``inspect.getsource``. With it, the
-                findings name undeclared reads, writes and emits, and a forgotten ``await``.
+                findings also name undeclared reads, writes and emits, unknown names, and a forgotten ``await``.
         """
         from ravestate.policy.findings import find_all
 

@@ -16,10 +16,10 @@ from ravestate.policy.names import Names
 from ravestate.policy.numbers import Numbers
 
 FLAGS = (f"{activity.name}:", f"{pressure.name}:")
-"""The prefixes of the names of the built-in flags' signals (`core:activity` and `core:pressure`).
+"""The signals of the built-in flags, `core:activity` and `core:pressure`, have names that begin like this.
 
-An activation that waits for such a signal changes neither flag. If it could, an activation on `activity.false` would
-set `activity`, and so lose its spike. Then `activity` would be false again, and so on, all in one instant.
+An activation that waits for such a signal changes neither flag. If it could, an activation that hears `activity.false`
+would set `activity`, and so lose its spike. Then `activity` would be false again, and so on, all in one instant.
 """
 
 

@@ -4,9 +4,9 @@ An act is a read, a write, an emit or the use of a payload. This file checks an 
 closure hold the slot or signal. All other acts are checked when the rule runs (law L3), e.g. an act on a name that the
 function itself binds.
 
-Guarded code is also checked only when the rule runs. Code is guarded if it is in a branch on a constant, on
-``hasattr``, or on a variable of an enclosing function. Such a function may make several rules with different
-declarations. The body of a ``try`` that expects a missing name is guarded as well.
+Guarded code, too, is checked only when the rule runs. Code is guarded if it is in a branch on a constant, on
+``hasattr``, or on a variable of an enclosing function. For other values of this variable, the enclosing function may
+make rules with other declarations. The body of a ``try`` that expects a missing name is guarded as well.
 """
 
 from __future__ import annotations
@@ -69,7 +69,7 @@ def acts_of(rule: RulePlan, source: Source) -> Acts:
 
 
 def undeclared(rule: RulePlan, acts: Acts) -> Iterator[str]:
-    """Yield a phrase for each kind of act that the rule does not declare, with the argument to write instead."""
+    """Yield a phrase for each kind of act that the rule does not declare, with the argument that would declare it."""
     declared = rule.rule
     kinds: tuple[tuple[str, dict[Any, int], Iterable[Any], Iterable[Any]], ...] = (
         ("reads", acts.reads, declared.reads, (*declared.reads, *declared.writes, *acts.writes)),
@@ -84,7 +84,7 @@ def undeclared(rule: RulePlan, acts: Acts) -> Iterator[str]:
             names = [spelt(thing.name, home) for thing in (*own, *new)]
             argument = names[0] if len(names) == 1 else f"({', '.join(names)})"
             places = ", ".join(f"{thing.name} (line {line})" for thing, line in new.items())
-            yield f"{what} {places} without declaring it: write {what}={argument}"
+            yield f"{what} {places} without declaring it: declare {what}={argument}"
     heard = {need.signal.signal for clause in rule.clauses for need in clause.needs}
     for signal, line in acts.payloads.items():
         if signal not in heard:

@@ -15,7 +15,7 @@ from ravestate.runtime.spares import Spares
 if TYPE_CHECKING:
     from ravestate.runtime.functions import Functions
 
-GRACE = 5.0  # a cancelled rule has this many seconds to clean up; then its run counts as ended
+GRACE = 5.0  # a cancelled rule has this many seconds to clean up; after that, its run counts as ended
 
 CLEANING = 10
 """A cancelled rule has this many turns of the event loop for its last writes, before any other rule continues."""
@@ -28,12 +28,12 @@ class AsyncRules:
 
     When the function of a run has ended, this class calls `Functions.finish`. If a run does not end within `GRACE`
     seconds of its cancellation, this class calls `Functions.drop`. When the tasks in `cleaning` have ended, or have
-    used up their turns, it calls `Functions.go_on`, and other effects follow.
+    used up their turns, it calls `Functions.go_on`, which performs the other effects.
     """
 
     def __init__(self, loop: asyncio.AbstractEventLoop, functions: Functions) -> None:
         self.cleaning: tuple[asyncio.Task[Any], ...] = ()
-        """The tasks that have just been cancelled. Until their last writes, other effects wait."""
+        """The tasks that have just been cancelled. Other effects wait until these tasks have made their last writes."""
         self._loop = loop
         self._functions = functions
         spares = Spares.join(loop)
@@ -46,7 +46,7 @@ class AsyncRules:
     def start(self, ctx: RuleContext) -> None:
         """Run a function to its end, or up to the first ``await`` that suspends it; a task continues from there.
 
-        No task may be current on the loop. When the caller has no more functions to start, it must call `rest`.
+        No task may be current on the loop. A caller that has no more functions to start must call `rest`.
         """
         task, self._spare = self._spare, None  # the function may start other functions
         if task is None:
@@ -91,9 +91,9 @@ class AsyncRules:
         self._grace[ctx] = self._loop.call_later(GRACE, self._grace_is_over, ctx)
 
     async def close(self, reason: str, *, at_once: bool) -> None:
-        """Cancel all runs, and wait at most `GRACE` seconds for them to end. Then abandon the runs that have not ended.
+        """Cancel all runs, and wait at most `GRACE` seconds for them to end; with `at_once`, do not wait.
 
-        With `at_once`, do not wait.
+        Then abandon the runs that have not ended.
         """
         for ctx, task in self._tasks.items():
             ctx.cancelled = reason

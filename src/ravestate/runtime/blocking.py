@@ -21,8 +21,8 @@ meanwhile."""
 FRESH: Final = 0.01  # steps that begin within this many seconds share one reading of the thread's CPU time
 
 ASLEEP = 0.05
-"""A step counts as sleeping only if its sleeps are longer than this on average (seconds). Shorter sleeps are waits for
-the interpreter's lock: a thread that waits for the lock sleeps again and again, for about 5 ms each time."""
+"""A step counts as sleeping only if its sleeps are longer than this on average (seconds). In shorter sleeps, the thread
+waits for the interpreter's lock: it then sleeps again and again, for about 5 ms each time."""
 
 OTHERS = 0.5
 """A step does not count as sleeping if other threads of the process computed for more than this share of its sleeps. The
@@ -36,10 +36,10 @@ class StepTimer:
     """Measures the steps of async rules, and warns of steps that block the loop. Use it on the loop's thread only.
 
     A step blocks the loop if it computes, or sleeps, for longer than `BLOCKING`. The time for which the thread waits
-    for a processor or for other threads does not count, so a busy machine causes no warning. The system counts how often
-    the thread slept voluntarily, and how often the scheduler preempted it. If the scheduler preempted the thread during a
-    step, the timer ignores the sleeps of this step. Windows and macOS do not have these numbers; there, the timer ignores
-    all sleeps.
+    for a processor or for other threads does not count, so a busy machine causes no warning. The operating system
+    counts how often the thread slept voluntarily, and how often the scheduler preempted it. If the scheduler preempted
+    the thread during a step, the timer ignores the sleeps of this step. Windows and macOS do not count this; there, the
+    timer ignores all sleeps.
 
     Reading the CPU time costs as much as a short rule. One reading serves all steps that begin within `FRESH` seconds,
     so a reported time may be too long by that much.

@@ -40,10 +40,10 @@ class Context:
         modules: Modules to compile, or one compiled `Policy` to share.
         settings: Name of a module → the module's settings. They override settings from the environment.
         seed: The seed of all random choices that rules make through ``ctx.random``; a new seed in each run by default.
-        patience: A rival under pressure gives up if it is not ready after this many seconds (law L16). A rule may set
-            its own value.
+        patience: A rule gives up if it is still not ready after another rule has waited for it for this many seconds
+            (law L16). A rule may set its own patience.
         trace: True to keep records of all events, for ``trace`` and ``explain``; or a function to call with each record.
-        journal: A function, e.g. a `Journal`. It receives each event and each `Taken` record, with its time (seconds).
+        journal: A function, e.g. a `Journal`, to call with each event and each `Taken` mark, and its time (seconds).
 
     Raises:
         DeclarationErrors: The modules or the settings have faults.
@@ -249,8 +249,8 @@ class Context:
     async def next(self, signal: Signal[T], timeout: float | None = None) -> T:  # noqa: ASYNC109  # the public name
         """Wait for the next spike of a signal, and return its payload.
 
-        The call first performs the effects that are due. If these raise the spike, the call returns immediately, and
-        other tasks get no turn. After 64 such calls in a row, the event loop gets a turn.
+        The call first starts the rules that are due. If one of them raises the signal, the call returns immediately,
+        and other tasks get no turn. After 64 such calls in a row, the event loop gets a turn.
 
         Args:
             signal: The signal, e.g. ``rawio.output.changed``.
@@ -273,7 +273,7 @@ class Context:
         except TimeoutError:
             raise TimeoutError(f"no {signal.name} within {timeout:g} s") from None
 
-    # ------------------------------------------------------------------------------------ looking in
+    # ------------------------------------------------------------------------------------ inspection
 
     def observe(self, observer: Callable[[Record], None]) -> Callable[[], None]:
         """Call `observer` with each new record of the trace. Return a function that stops these calls.
@@ -341,7 +341,7 @@ class Context:
         return snapshot(self._running().engine_now())
 
     def plain_functions(self) -> list[str]:
-        """Return the names of the rules whose plain functions are running: one name for each run."""
+        """Return the names of the rules whose plain functions (not ``async``) are running: one name for each run."""
         return self._running().functions.plain_names()
 
     def _running(self) -> Runner:

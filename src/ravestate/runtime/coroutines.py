@@ -1,4 +1,7 @@
-"""The generators behind an eager task. They stay interpreted in the compiled build: a task needs real generators."""
+"""The generators behind an eager task (``eager_task.py``).
+
+The compiled build leaves this file interpreted, because a task needs real generators.
+"""
 
 from __future__ import annotations
 
@@ -28,8 +31,8 @@ DONE = Done(None)
 def drive() -> Generator[Any, Any, Any]:
     """Run the functions of rule contexts, one after another.
 
-    `send` takes each context. The generator yields everything that the function's coroutine yields, and then a `Done`.
-    So the end of a coroutine needs no exception, which would take longer than a short rule.
+    The caller passes in each context by `send`. The generator yields everything that the function's coroutine yields,
+    and then a `Done`. So the end of a coroutine needs no exception, which would take longer than a short rule.
     """
     ctx: Any = yield
     while True:
@@ -38,7 +41,7 @@ def drive() -> Generator[Any, Any, Any]:
 
 
 async def main(host: Generator[Any, Any, Any]) -> Any:
-    """Run a `host` as a coroutine. A task accepts only coroutines, but a host must be free to yield anything."""
+    """Run a generator of `host` as a coroutine, because a task accepts only coroutines."""
     return await host  # type: ignore[misc]  # it is decorated with types.coroutine
 
 

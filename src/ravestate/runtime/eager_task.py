@@ -1,9 +1,9 @@
 """Run the first step of a coroutine without a task of its own. If the coroutine suspends, give it a task.
 
-Making a task and switching to it takes longer than running most rules. So a coroutine runs its first step without a
-task of its own. During this step, a spare task counts as the current task. So `asyncio.current_task`, `asyncio.timeout`
-and context variables work as usual. If the coroutine ends in its first step, the spare task remains free for the next
-coroutine. If the coroutine suspends, the spare task adopts it.
+Making a task and switching to it takes longer than running most rules. That is why the first step needs no task. During
+this step, a spare task counts as the current task. So `asyncio.current_task`, `asyncio.timeout` and context variables
+work as usual. If the coroutine ends in its first step, the spare task remains free for the next coroutine. If the
+coroutine suspends, the spare task adopts it.
 """
 
 from __future__ import annotations
@@ -26,7 +26,7 @@ KIND: Final = Done
 
 
 class EagerTask:
-    """A spare task. When it has adopted the coroutine of a rule, it is the rule's task. The timer measures each step.
+    """A spare task. When it has adopted the coroutine of a rule, it is the rule's task. `timer` measures each step.
 
     The coroutine starts with the context variables `variables`. No other code sees the coroutine's changes to them.
 
@@ -64,7 +64,7 @@ class EagerTask:
         self._clean = variables
         self._renew()
         waiting: Any = host(self)
-        waiting.send(None)  # from now on, a cancellation reaches the host, even before the task's first step
+        waiting.send(None)  # so that a cancellation reaches the host, even before the task's first step
         self.task: asyncio.Task[Any] = loop.create_task(main(waiting), context=self._context)
 
     def _renew(self) -> None:
@@ -77,12 +77,11 @@ class EagerTask:
         """Run a rule's function to its end or to its first suspension; no task may be current on the loop.
 
         Returns:
-            A `Done` with the function's result, if the function has ended. The spare task is then free for another
-            function, unless it is `spoilt`. None, if the function's coroutine is suspended. The task has then adopted
-            the coroutine.
+            If the function has ended: a `Done` with its result. The task is free for another function, unless it is
+            `spoilt`. If the function's coroutine is suspended: None. The task has adopted the coroutine.
 
         Raises:
-            BaseException: The function has raised this exception. The spare task is free, as above.
+            BaseException: The function has raised this exception. The task is free, as after a function that has ended.
         """
         rule = ctx.rule
         ENTER(self._loop, self.task)

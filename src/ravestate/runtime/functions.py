@@ -90,7 +90,7 @@ class Functions:
             self.drop(ctx, effect.reason)
 
     def holds(self, *, halted: bool) -> bool:
-        """Return whether effects must wait for a plain function in virtual time, or for rules that were just cancelled.
+        """Return whether effects must wait for rules just cancelled or, in virtual time, for a plain function.
 
         While the clock is `halted`, effects do not wait for the cancelled rules.
         """

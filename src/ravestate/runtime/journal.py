@@ -12,7 +12,10 @@ from ravestate.engine.events import Event
 
 @dataclass(slots=True)
 class Taken:
-    """The runner took the engine's effects. The engine decides only then, so a replay must take them then, too."""
+    """A mark in the journal: here, the runner took the engine's effects.
+
+    The engine decides only when its effects are taken, so a replay must take them at the same points.
+    """
 
 
 @dataclass(frozen=True, slots=True)

@@ -11,8 +11,7 @@ from ravestate.engine.effects import Ended, Spiked
 
 
 class Waiter:
-    """A task that waits for the next spike of a signal. If the spike is not there yet, `future` wakes the task
-    later."""
+    """A task that waits for the next spike of a signal; `future` wakes the task when the spike comes."""
 
     __slots__ = ("done", "error", "future", "payload")
 
@@ -99,7 +98,8 @@ class Hooks:
         on_ended: Called with the outcome of each run that has ended.
         on_failed: Called with the name of each rule that fails, and with its exception.
         on_endless: Called with the name of the last rule that ran, if an instant of virtual time does not end. If this
-            hook is set, the context's time is virtual, and plain functions run one by one, so that threads do not race.
+            hook is set, the context's time is virtual (as in a simulation). Plain functions then run one by one, so
+            that threads do not race.
         listeners: Name of a signal → a function to call with the payload of every spike of the signal.
     """
 

@@ -1,4 +1,4 @@
-"""The argument of every rule's function, which reads slots and acts only through this argument (laws L3, L13)."""
+"""The argument of a rule's function. The function reads slots and acts only through this argument (laws L3, L13)."""
 
 from __future__ import annotations
 
@@ -226,7 +226,7 @@ class RuleContext:
             )
         own = getattr(self.rule, what)
         line = self._spelt(value)
-        line = f"add {what}={line} to" if not own else f"write {what}=({', '.join(map(self._spelt, own))}, {line}) in"
+        line = f"add {what}={line} to" if not own else f"declare {what}=({', '.join(map(self._spelt, own))}, {line}) in"
         raise UndeclaredError(
             f"rule {self.rule.name} ({self.rule.origin}) {did} {name} without declaring it: {line} "
             f"@{self.rule.name.split(':')[0]}.rule(...){nearest(name, [d.name for d in declared])}"

@@ -26,7 +26,7 @@ UNABLE = (NotImplementedError, RuntimeError, ValueError)
 
 
 def run(*modules: Module | ModuleType | Policy, **options: Any) -> None:
-    """Run an agent until a rule calls ``ctx.stop()`` or the user presses Ctrl-C; then shut it down in order.
+    """Run an agent until a rule calls ``ctx.stop()`` or the user presses Ctrl-C; then shut the agent down in order.
 
     The agent runs as one context. If a platform among the modules serves many users, each user gets their own context.
 
@@ -120,7 +120,7 @@ def asked_by_signals(stop: Callable[[], None]) -> Generator[None]:
         yield
     except asyncio.CancelledError:
         if main is not None:
-            for _ in range(1, asked):  # each signal after the first has cancelled the task once: undo these calls
+            for _ in range(1, asked):  # each signal after the first has called `cancel` once: undo these calls
                 main.uncancel()
         if asked < 2 or main is None or main.cancelling():
             raise

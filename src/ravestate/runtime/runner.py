@@ -33,8 +33,7 @@ BATCH: Final = 512  # the loop gets a turn after this many rounds of effects, so
 TURN: Final = 0.02  # the loop gets a turn after this many real seconds, even after fewer rounds than `BATCH`
 
 SETTLES: Final = 64
-"""This many waits for a signal may end in a row without a turn of the loop. Then the loop gets a turn
-(`Runner.settle`)."""
+"""The loop gets a turn after this many waits for a signal have ended in a row without one (`Runner.settle`)."""
 
 ENDED = "the context has ended"
 
@@ -205,7 +204,7 @@ class Runner:
             self.pump()
 
     def settle(self) -> None:
-        """Perform the effects of the loop's next turn now, because a task is about to wait for a spike.
+        """Perform now the effects of the loop's next turn, because a task is about to wait for a spike.
 
         Other tasks get no turn meanwhile. So after `SETTLES` calls, the effects wait for the loop's next turn. In
         virtual time, and inside a rule, the effects always wait for that turn.
@@ -250,7 +249,7 @@ class Runner:
         try:
             for _ in range(rounds):
                 if (self._is_virtual or rules.cleaning) and functions.holds(halted=self.clock.halted):
-                    break  # when these functions or rules end, they schedule the next call
+                    break  # effects must wait: the functions that hold them up schedule the next call when they end
                 self._rounds += 1
                 if not todo:
                     if self._journal is not None:
@@ -271,7 +270,7 @@ class Runner:
                     break
             else:
                 self.schedule()
-        except BaseException:  # e.g. a rule raised KeyboardInterrupt; other rules continue while the loop runs
+        except BaseException:  # e.g. a rule raised KeyboardInterrupt: the loop may still run other rules
             self.schedule()
             raise
         finally:

@@ -1,4 +1,4 @@
-"""The spare task of a loop (``eager_task.py``). The contexts on the loop share it: one at a time uses it."""
+"""The spare task of a loop (``eager_task.py``). The contexts on the loop share this task: one at a time uses it."""
 
 from __future__ import annotations
 

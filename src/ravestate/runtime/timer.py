@@ -19,7 +19,8 @@ class Timer:
         self._due = 0.0
 
     def set(self, due: float | None) -> None:
-        """Fire at `due` (seconds), unless another clock drives the clock. An earlier timer stays: it does no harm."""
+        """Fire at `due` (seconds), unless another clock drives the context's clock. An earlier timer stays: it does no
+        harm."""
         if due is None or self._clock.driven or (self._handle is not None and self._due <= due):
             return
         self.clear()

@@ -13,8 +13,8 @@ from ravestate.engine.engine import Engine
 class Waits:
     """The tasks that wait until an engine reaches a certain state.
 
-    While `is_busy` returns true, some effects have not been performed yet. A call of `schedule` makes the loop perform
-    them, and then call `check`.
+    While `is_busy()` is true, some effects have not been performed yet. A call of `schedule` makes the loop perform
+    these effects, and then call `check`.
     """
 
     def __init__(self, engine: Engine, is_busy: Callable[[], bool], schedule: Callable[[], None]) -> None:
@@ -75,8 +75,8 @@ class Waits:
         """Wait until all activations outside `known` have ended, and no rule waits for a minimum age of
         ``rs.shutdown``.
 
-        A background rule among `known` may restart endlessly. So wait for its new run only if that run handles
-        ``rs.shutdown``. In any case, wait for at most `seconds`.
+        A background rule among `known` may restart endlessly. So wait for a new run of such a rule only if that run
+        handles ``rs.shutdown``. In any case, wait for at most `seconds`.
         """
         engine = self._engine
         shutdown = engine.policy.signal_of["core:shutdown"].index

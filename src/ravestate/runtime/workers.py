@@ -42,7 +42,7 @@ class Job:
 
 
 class ThreadPool:
-    """The worker threads of the process. When all are busy, the pool makes another one, and keeps it for a while."""
+    """The worker threads of the process. If all are busy, a new job gets a new thread, up to `THREADS` threads."""
 
     def __init__(self) -> None:
         self.reset()
@@ -152,7 +152,7 @@ class JobQueue:
         return job
 
     def abandon(self, job: Job) -> None:
-        """Give a job's place in the pool to the next job. Nothing waits for the abandoned job, which may hang."""
+        """Give a job's place in the pool to the next job, although the first job may still run, or hang."""
         with self._pool.change:
             if job in self._waiting:
                 self._waiting.remove(job)

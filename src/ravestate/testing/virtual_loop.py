@@ -42,7 +42,7 @@ class VirtualLoop(asyncio.SelectorEventLoop):
     def __init__(self) -> None:
         self._virtual = 0.0
         self.goal: float | None = None
-        """The virtual time (seconds) at which `run_to` stops; None while it does not run."""
+        """The virtual time (seconds) at which `run_to` stops; None outside of `run_to`."""
         self.busy: Callable[[], list[str]] = list
         self._timers = 0
         self._endless = ""
@@ -105,8 +105,8 @@ class VirtualLoop(asyncio.SelectorEventLoop):
             self.goal = None
         if self._endless:
             raise EngineError(
-                f"at {self._virtual:g} s rules run without end, {self._endless} among them: a detached loop needs an age; "
-                "add .min_age(seconds) to the signal that closes the loop"
+                f"at {self._virtual:g} s, rules trigger each other without end, among them {self._endless}: add "
+                ".min_age(seconds) to a signal of the loop, so that time passes"
             )
         self._virtual = max(self._virtual, goal)
 
