@@ -122,12 +122,12 @@ def test_readers_in_new_contexts_do_not_look_for_a_backend_again(
 
 
 @pytest.fixture
-def busy(reader: Pipeline, monkeypatch: pytest.MonkeyPatch) -> Callable[[], AbstractContextManager[None]]:
-    """A function that returns a context manager: in its ``with`` block, the pipeline is parsing a text."""
+def busy(monkeypatch: pytest.MonkeyPatch) -> Callable[[Pipeline], AbstractContextManager[None]]:
+    """A function that returns a context manager: in its ``with`` block, the given pipeline is parsing a text."""
     parse = Language.__call__
 
     @contextmanager
-    def parsing() -> Generator[None]:
+    def parsing(reader: Pipeline) -> Generator[None]:
         begun, go_on = threading.Event(), threading.Event()
 
         def wait(language: Language, text: str, **options: Any) -> Any:
@@ -148,10 +148,11 @@ def busy(reader: Pipeline, monkeypatch: pytest.MonkeyPatch) -> Callable[[], Abst
 
 
 def test_load_does_not_wait_for_readers_of_a_loaded_pipeline(
-    reader: Pipeline, busy: Callable[[], AbstractContextManager[None]]
+    new_reader: Callable[[], Pipeline], busy: Callable[[Pipeline], AbstractContextManager[None]]
 ) -> None:
+    reader = new_reader()
     asking = threading.Thread(target=reader.load, daemon=True)
-    with busy():
+    with busy(reader):
         asking.start()
         asking.join(10)
         assert not asking.is_alive()
@@ -168,13 +169,28 @@ SAID = (
 
 
 @pytest.fixture
-def crowd(reader: Pipeline, busy: Callable[[], AbstractContextManager[None]]) -> Callable[[], list[Any]]:
+def new_reader() -> Callable[[], Pipeline]:
+    """A function that returns a loaded pipeline, which remembers no text."""
+
+    def make() -> Pipeline:
+        made = Pipeline("")
+        made.load()
+        return made
+
+    return make
+
+
+@pytest.fixture
+def crowd(
+    new_reader: Callable[[], Pipeline], busy: Callable[[Pipeline], AbstractContextManager[None]]
+) -> Callable[[], list[Any]]:
     """A function that reads each text of `SAID` in a separate thread, and returns their results and errors.
 
-    All threads wait while the pipeline parses another text.
+    All threads wait while a new pipeline parses another text.
     """
 
     def ask() -> list[Any]:
+        reader = new_reader()
         found: list[Any] = [None] * len(SAID)
         asking = threading.Semaphore(0)
 
@@ -186,7 +202,7 @@ def crowd(reader: Pipeline, busy: Callable[[], AbstractContextManager[None]]) ->
                 found[number] = error
 
         threads = [threading.Thread(target=read, args=(number,)) for number in range(len(SAID))]
-        with busy():
+        with busy(reader):
             for thread in threads:
                 thread.start()
             for _ in threads:

@@ -12,6 +12,7 @@ from ravestate.modules.meta.nlp.inquiry import question_of
 from ravestate.modules.meta.nlp.pipeline import Pipeline, pipeline
 from ravestate.modules.meta.nlp.repair import repaired, tag_at
 from ravestate.modules.meta.nlp.statements import statements_of, triples_of
+from ravestate.modules.meta.nlp.tree import Tree, Word
 
 WORDS = [
     "not", "but", ",", ".", "no", "and", "I", "my", "sister", "Tom", "Leeds", "live", "in", "is", "isn't", "a", "dog", "tall", "that", "of",
@@ -87,6 +88,9 @@ def test_contrasts_are_found_in_texts_without_a_verb_as_well(
 @given(st.lists(st.sampled_from(WORDS)))
 @example(["dog", ","]).via("a comma with nothing after it")
 @example(["that", "'s", "misty", "outside", ",", "not", "sunny"]).via("once a tree with a circle")
+@example(["My", "late", "husband", "Walter", "always", "swore", "by", "cabbage", "leaves", "."]).via(
+    "once a tree with a circle"
+)
 @settings(max_examples=200, deadline=None)
 def test_every_word_of_a_repaired_tree_leads_to_a_root(words: list[str]) -> None:
     tree = repaired(pipeline("").read(" ".join(words))[0])
@@ -94,6 +98,66 @@ def test_every_word_of_a_repaired_tree_leads_to_a_root(words: list[str]) -> None
         above = [word, *islice(tree.ancestors(word), len(tree.words))]
         assert above[-1].head == above[-1].index
     contrasts_of(tree)
+
+
+DEPS = [
+    "nsubj",
+    "dobj",
+    "relcl",
+    "ccomp",
+    "poss",
+    "compound",
+    "acl",
+    "attr",
+    "advmod",
+    "appos",
+    "conj",
+    "pobj",
+    "aux",
+    "acomp",
+    "xcomp",
+    "mark",
+]
+TAGS = [
+    "NOUN NN",
+    "PROPN NNP",
+    "VERB VBD",
+    "VERB VB",
+    "AUX VBZ",
+    "ADJ JJ",
+    "PRON PRP",
+    "PRON WP",
+    "DET WDT",
+    "CCONJ CC",
+]
+
+
+@st.composite
+def trees(draw: st.DrawFn) -> Tree:
+    """Draw a tree of random words with random labels and heads."""
+    texts = draw(
+        st.lists(
+            st.sampled_from([*WORDS, "Ann", "husband", "work", "who", "me", "did", "were"]), min_size=1, max_size=9
+        )
+    )
+    order = draw(st.permutations(range(len(texts))))
+    words: list[Word] = []
+    for place, text in zip(order, texts, strict=True):  # a head comes earlier in the order, so there is no circle
+        above = [index for index, other in enumerate(order) if other < place]
+        head = draw(st.sampled_from(above)) if above else len(words)
+        dep = draw(st.sampled_from(DEPS)) if above else "ROOT"
+        pos, tag = draw(st.sampled_from(TAGS)).split()
+        words.append(Word(len(words), text, text.lower(), pos, tag, dep, head, 8 * len(words)))
+    return Tree(" ".join(f"{text:7}" for text in texts), words)
+
+
+@given(trees())
+@settings(max_examples=500, deadline=None)
+def test_no_repair_makes_a_circle_whatever_the_labels(tree: Tree) -> None:
+    mended = repaired(tree)
+    for word in mended.words:
+        above = [word, *islice(mended.ancestors(word), len(mended.words))]
+        assert above[-1].head == above[-1].index
 
 
 @pytest.mark.parametrize("text", ["my name not tom", "why not pizza", "not now", "I live in Rome, not all the time"])

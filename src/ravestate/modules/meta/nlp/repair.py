@@ -47,9 +47,26 @@ def repaired(tree: Tree) -> Tree:
             words[word.index] = replace(word, dep="poss")
         if word.dep == "advmod" and word.pos == "PROPN" and word.head == word.index - 1:  # as in "you speak Greek"
             words[word.index] = replace(word, dep="dobj")
-    words = _split_relatives(Tree(tree.text, words))
-    words = join_contrasts(Tree(tree.text, words))
+    if not _is_tree(words):
+        return tree
+    for mend in (_split_relatives, join_contrasts):
+        mended = mend(Tree(tree.text, words))
+        words = mended if _is_tree(mended) else words
     return tree if words == list(tree.words) else Tree(tree.text, words)
+
+
+def _is_tree(words: Sequence[Word]) -> bool:
+    """Return whether each word leads to a root. Two repairs of one sentence may contradict each other and make a loop."""
+    rooted: set[int] = set()
+    for word in words:
+        path: set[int] = set()
+        while word.index not in rooted and word.head != word.index:
+            if word.index in path:
+                return False
+            path.add(word.index)
+            word = words[word.head]
+        rooted |= path | {word.index}
+    return True
 
 
 def is_tag(word: Word) -> bool:
@@ -230,6 +247,12 @@ def _name_relative(tree: Tree, words: list[Word], noun: Word) -> None:
     if noun.pos != "NOUN" or name is None or name.pos != "PROPN" or name.dep != "nsubj" or noun.head == name.index:
         return
     if tree.children(noun, "poss") and noun.dep != "nsubj" and name not in tree.children(noun):
+        verb = tree.head(name)
+        if verb.dep == "relcl" and verb.head == noun.index:  # "my late husband Walter swore by cabbage leaves"
+            head = verb.index if noun.head == noun.index else noun.head
+            words[verb.index] = replace(verb, dep=noun.dep, head=head)
+        elif noun in tree.ancestors(name):
+            return
         words[noun.index] = replace(noun, dep="compound", head=name.index)
 
 
