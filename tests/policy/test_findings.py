@@ -224,7 +224,7 @@ def test_the_message_names_the_best_of_several_winners(scene: Scene) -> None:
 
 
 def test_signals_that_no_rule_raises_are_reported(scene: Scene) -> None:
-    """A signal from outside must have input=True. A slot needs no mark, because code outside may write any slot."""
+    """A signal from outside must have input=True. Signals of slots are never reported, because any code may write a slot."""
     question, stop = scene.module.signal("question"), scene.module.signal("stop")
     scene.rule("answer", question | scene.out.changed, until=stop)
     found = scene.findings()
