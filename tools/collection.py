@@ -113,7 +113,7 @@ class Entry:
         """Return the first line of a field, without notes."""
         text = self.get(*path).partition("¦")[0]
         text = re.split(r"(?:;|,)? ?\bnotes?\b ?\d?(?: ?-|:)", text, maxsplit=1)[0]
-        # "metropolitan France: ..." goes
+        # drop a label such as "metropolitan France:"
         return re.sub(r"^[^:;,.]{3,30}: ", "", text).strip(" ;.")
 
     def latest(self, field: str) -> str:

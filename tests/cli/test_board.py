@@ -162,7 +162,7 @@ def test_the_complete_agent_has_visionio_only_if_the_eyes_are_set_up(
     assert {module.name for module in served[0].policy.modules} & {"visionio", "charades"} == seen
 
 
-def test_open_shows_a_recorded_trace_without_an_agent(tmp_path: Path) -> None:
+def test_the_option_open_shows_a_recorded_trace_without_an_agent(tmp_path: Path) -> None:
     recorded(tmp_path / "trace.json")
     command = Command("--open", str(tmp_path / "trace.json"))
     try:

@@ -135,8 +135,10 @@ def test_talk_leaves_out_other_platforms(folder: Path, capsys: pytest.CaptureFix
 
 
 def test_ctrl_c_ends_a_conversation_cleanly(folder: Path) -> None:
-    """One rule waits for input in a thread, and so holds the virtual clock back. The end of the input ends the talk as
-    well, so the test keeps the input open until the signal has cancelled this rule."""
+    """The rule `keep` reads the standard input in a thread, so virtual time stands still until Ctrl-C cancels the rule.
+
+    The test keeps the input open until then, because the end of the input would end the conversation without Ctrl-C.
+    """
     (folder / "slow.py").write_text(
         STORYTELLER
         + """

@@ -1,4 +1,7 @@
-"""Halves: a first spike that waits for a second spike costs no activation, and this does not change the runs."""
+"""A *half* keeps the spikes that wait for the second spike of a rule `a & b`, so that they need no activations.
+
+Halves do not change the runs.
+"""
 
 from __future__ import annotations
 

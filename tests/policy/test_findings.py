@@ -60,7 +60,7 @@ def test_a_rule_that_waits_for_an_earlier_writer_of_its_slot_is_unreachable(scen
     scene.rule("say", scene.heard, writes=scene.out, emits=said)
     scene.rule("again", said, writes=scene.out)
     text = scene.findings()["unreachable", "m:again"]
-    assert "waits for an effect of rules that write m:out before it" in text
+    assert "waits for a signal that only other writers of m:out raise, and a causal group allows only one" in text
     assert (
         "add .detached() to the signal that it waits for, or detached=True to the rule that raises this signal" in text
     )
@@ -107,7 +107,7 @@ def test_a_rule_that_can_win_is_not_reported(scene: Scene, first: dict[str, Any]
     assert ("never-wins", "m:second") not in scene.findings()
 
 
-def test_a_rule_with_one_clause_that_can_win_is_not_reported(scene: Scene) -> None:
+def test_a_rule_with_two_clauses_is_not_reported_if_one_of_them_can_win(scene: Scene) -> None:
     scene.rule("first", scene.heard, writes=scene.out, weight=2)
     scene.rule("second", scene.heard | scene.module.signal("other"), writes=scene.out)
     assert ("never-wins", "m:second") not in scene.findings()
@@ -224,7 +224,7 @@ def test_the_message_names_the_best_of_several_winners(scene: Scene) -> None:
 
 
 def test_signals_that_no_rule_raises_are_reported(scene: Scene) -> None:
-    """A signal from outside must have input=True. Signals of slots are never reported, because any code may write a slot."""
+    """A signal from outside needs input=True. The signals of a slot are not reported, because any code may write it."""
     question, stop = scene.module.signal("question"), scene.module.signal("stop")
     scene.rule("answer", question | scene.out.changed, until=stop)
     found = scene.findings()
@@ -326,7 +326,7 @@ def test_the_source_of_rules_is_examined_only_on_demand(scene: Scene) -> None:
     assert (kind, subject, others) == ("undeclared", "m:say", [])
     line = say.function.__code__.co_firstlineno + 2
     assert text == (
-        f"undeclared: rule m:say ({say.origin}) writes m:out (line {line}) without declaring it: write writes=out"
+        f"undeclared: rule m:say ({say.origin}) writes m:out (line {line}) without declaring it: add writes=out to the rule"
     )
 
 

@@ -256,7 +256,7 @@ async def test_a_visitor_can_leave_while_the_agent_speaks() -> None:
 
 
 @in_virtual_time
-async def test_the_heard_words_mark_the_message_that_begins_with_them() -> None:
+async def test_the_message_that_begins_with_the_heard_words_is_marked() -> None:
     async with page() as app, Visit(app) as visit:
         await visit.hello()
         context = session_of(app).context
