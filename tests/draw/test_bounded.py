@@ -54,8 +54,9 @@ def test_a_picture_that_is_wide_enough_keeps_its_layers() -> None:
     arcs = [(0, v, 1, 1) for v in range(1, 40)]
     ranks = network_simplex(40, arcs)
     assert fit_to_screen(ranks, arcs, lambda _: (1000.0, 800.0)) == ranks
-    assert fit_to_screen(ranks, arcs, lambda _: (100.0, 700.0)) == ranks  # the picture is narrow, but no higher than a screen
-    assert fit_to_screen(ranks, arcs, lambda _: (100.0, 2000.0)) == ranks  # the picture is too high, but bounded layers would not make it lower
+    # A narrow picture keeps its layers if it is no higher than a screen, or if bounded layers would not make it lower.
+    assert fit_to_screen(ranks, arcs, lambda _: (100.0, 700.0)) == ranks
+    assert fit_to_screen(ranks, arcs, lambda _: (100.0, 2000.0)) == ranks
 
 
 @pytest.mark.parametrize("points", [20, 30, 60, 120])

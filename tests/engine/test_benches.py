@@ -1,7 +1,7 @@
 """On a *bench*, the spikes of one signal wait together for a spike of the other signal of a rule `a & b`.
 
-That other spike is called the *counterpart*. Only a rule without rivals has benches. The rule runs on the same spikes as
-it would without benches.
+That other spike is called the *counterpart*. Only a rule without better rivals has benches. The rule runs on the same
+spikes as it would without benches.
 """
 
 from __future__ import annotations

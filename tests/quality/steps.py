@@ -121,7 +121,7 @@ def turned_rows(sentence: str) -> str:
 
 
 def repairs_rows(sentence: str) -> str:
-    """Return how a user objects to the agent's last answer. The situation is the user's last utterance, and this answer."""
+    """Return how a user objects to the agent's last answer. The situation is the user's utterance and this answer."""
     situation, text = _parts(sentence)
     before, said = situation.split(" | ")
     found = repair_in(analysed(text), State(said=(said,), before=before))

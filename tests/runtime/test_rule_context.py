@@ -112,7 +112,7 @@ def test_reading_a_signal_instead_of_its_slot_is_refused(scene: Scene) -> None:
 def test_a_slot_declared_to_be_read_cannot_be_written(scene: Scene) -> None:
     scene.run(write(scene.mood, "x"), reads=scene.mood, writes=scene.note)
     text = str(scene.outcome())
-    assert "wrote m:mood without declaring it: write writes=(note, mood) in @m.rule(...)" in text
+    assert "wrote m:mood without declaring it: declare writes=(note, mood) in @m.rule(...)" in text
 
 
 @pytest.mark.parametrize("value", [42, None, b"x", ["x"] * 100])
@@ -136,7 +136,7 @@ def test_assigning_or_deleting_an_item_of_a_collection_is_refused(scene: Scene, 
 def test_the_error_names_a_slot_of_another_module_together_with_its_module(scene: Scene) -> None:
     lamp = rs.Module("lamp").slot("light", "")
     scene.run(write(lamp, "x"), writes=scene.note)
-    assert "write writes=(note, lamp.light) in @m.rule(...)" in str(scene.outcome())
+    assert "declare writes=(note, lamp.light) in @m.rule(...)" in str(scene.outcome())
 
 
 def test_the_message_about_a_misspelt_slot_names_the_nearest(scene: Scene) -> None:
@@ -331,10 +331,10 @@ def test_an_emitted_signal_carries_its_payload(scene: Scene) -> None:
 @pytest.mark.parametrize(
     ("what", "text"),
     [
-        (lambda s: s.other, "emitted m:other without declaring it: write emits=(out, other) in @m.rule(...)"),
+        (lambda s: s.other, "emitted m:other without declaring it: declare emits=(out, other) in @m.rule(...)"),
         (
             lambda s: rs.Module("m").signal("outt"),
-            "write emits=(out, outt) in @m.rule(...); did you mean 'm:out'?",
+            "declare emits=(out, outt) in @m.rule(...); did you mean 'm:out'?",
         ),
         (
             lambda s: s.mood,

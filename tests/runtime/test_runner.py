@@ -341,7 +341,7 @@ UNDECLARED = {
     "read": (lambda talk, ctx: ctx[talk.note], "read m:note without declaring it: add reads=note"),
     "write": (
         lambda talk, ctx: ctx.__setitem__(talk.note, "x"),
-        "wrote m:note without declaring it: write writes=(said, note)",
+        "wrote m:note without declaring it: declare writes=(said, note)",
     ),
     "emit": (lambda talk, ctx: ctx.emit(talk.word), "emitted m:word without declaring it: add emits=word"),
 }

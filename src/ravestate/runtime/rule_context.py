@@ -226,7 +226,7 @@ class RuleContext:
             )
         own = getattr(self.rule, what)
         line = self._spelt(value)
-        line = f"add {what}={line} to" if not own else f"write {what}=({', '.join(map(self._spelt, own))}, {line}) in"
+        line = f"add {what}={line} to" if not own else f"declare {what}=({', '.join(map(self._spelt, own))}, {line}) in"
         raise UndeclaredError(
             f"rule {self.rule.name} ({self.rule.origin}) {did} {name} without declaring it: {line} "
             f"@{self.rule.name.split(':')[0]}.rule(...){nearest(name, [d.name for d in declared])}"
