@@ -13,7 +13,7 @@ Seconds = float
 
 
 class Agent:
-    """A module with the chain. It notes the inputs and the answers.
+    """A module with a chain of rules (see ``questions/answer.py``). `said` has the answers.
 
     Args:
         k: The length of the chain.
@@ -107,7 +107,7 @@ def answer(k: int, inputs: int, unrelated: int = 0, threads: bool = False) -> di
 
 
 def simulated(k: int, inputs: int) -> list[Seconds]:
-    """Measure the same inputs in virtual time, without an event loop. This is the time of the engine alone."""
+    """Measure the same inputs in virtual time, with `simulate`."""
     agent = Agent(k)
     times = []
     with simulate(agent.module, trace=False) as sim:

@@ -37,7 +37,7 @@ def test_the_method_ran_returns_true_between_the_start_and_the_end_of_a_run(time
         born(1, "m:s"),
         born(2, "m:s", group=2),
         *run(1, "m:r", (1,), 1.0, 5.0),
-        *run(2, "m:r", (1,), 2.0, 2.2),  # it runs in parallel
+        *run(2, "m:r", (1,), 2.0, 2.2),  # a second run, at the same time
         *run(3, "m:r", (2,), 5.2, 6.0),  # the rule runs for another cause
         *run(4, "m:r", (1,), 7.0, None),
     ]
@@ -58,7 +58,7 @@ def test_the_method_before_names_the_rule_of_this_group_that_raised_a_spike_of_t
     ]
     history = History(records, 3)
     assert [history.before(number) for number in (3, 4, 2)] == ["m:classify", "", ""]
-    assert [history.before(number) for number in (0, 99)] == ["", ""]  # unknown
+    assert [history.before(number) for number in (0, 99)] == ["", ""]  # no run has these numbers
 
 
 def test_the_method_answered_returns_the_run_that_ended_first_for_this_cause() -> None:

@@ -1,6 +1,6 @@
-"""A *half* keeps the spikes that wait for the second spike of a rule `a & b`, so that they need no activations.
+"""A *first spike* waits for the second spike of a rule `a & b`. A *half* keeps first spikes without activations.
 
-Halves do not change the runs.
+Halves save time and memory, and do not change the runs.
 """
 
 from __future__ import annotations

@@ -1,4 +1,4 @@
-"""The static graph of causes (L7): which rules can cause a signal, directly or through other rules."""
+"""The static graph of causes (law L7): which rules can cause a signal, directly or through other rules."""
 
 import ravestate as rs
 from ravestate.policy.causes import Causes

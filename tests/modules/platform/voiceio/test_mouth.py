@@ -1,4 +1,4 @@
-"""The mouth speaks growing text, knows which part the user has heard, and can hold its speech."""
+"""A `Mouth` speaks a text while the text grows, knows which part the user has heard, and can pause (`hold`)."""
 
 import asyncio
 
@@ -148,7 +148,7 @@ def test_the_method_reference_returns_the_sound_that_is_playing() -> None:
     run(listen)
 
 
-def test_speech_yields_each_sentence_as_soon_as_it_is_complete() -> None:
+def test_the_class_speech_yields_each_sentence_as_soon_as_it_is_complete() -> None:
     async def listen() -> None:
         speech, found = Speech(), list[tuple[int, str]]()
 

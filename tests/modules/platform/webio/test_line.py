@@ -12,7 +12,7 @@ from ravestate.modules.platform.webio.line import AHEAD, BLOCK, CHUNK, MOST_HEAR
 
 
 class Speaker:
-    """A stand-in for a browser window. It fetches sound, and the test says how much it has played."""
+    """A stand-in for a browser window. It fetches sound, and the test calls `played` to report how much has played."""
 
     def __init__(self, line: PageLine) -> None:
         self.line = line
