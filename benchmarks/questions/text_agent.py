@@ -25,7 +25,7 @@ from benchmarks.peers.wire import serve
 from ravestate.cli.complete import COMPLETE
 
 DECIDE, PROMPT, HOLD = 0.015, 1.5, 500e6
-"""Seconds from input to decision, seconds to the first prompt, and bytes."""
+"""The limits: seconds from input to decision, seconds to the first prompt, and bytes of memory."""
 
 PATIENCE = 60.0
 """Seconds after which an agent without a decision has failed."""

@@ -1,4 +1,4 @@
-"""The arguments that name an agent: names of modules, agent files and settings. Each mistake gives a one-line message."""
+"""The arguments that name an agent: names of modules, agent files, settings. Each mistake gives a one-line message."""
 
 import re
 from importlib.metadata import EntryPoint

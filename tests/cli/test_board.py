@@ -94,7 +94,7 @@ def test_without_modules_the_command_serves_the_complete_agent(tmp_path: Path) -
 
 @pytest.fixture
 def served(monkeypatch: pytest.MonkeyPatch) -> list[Agent]:
-    """Return a list to which each command adds the agent that it serves. The server ends at once."""
+    """Return a list to which each command adds the agent that it serves. The server ends immediately."""
     agents: list[Agent] = []
 
     class Stub:

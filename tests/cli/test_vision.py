@@ -77,7 +77,7 @@ def test_vision_learn_refuses_a_picture_of_several_people_and_pictures_of_differ
     assert code == 2 and why in errors and not memory.exists()
 
 
-def test_check_reports_the_worker_and_the_camera(capsys: pytest.CaptureFixture[str]) -> None:
+def test_the_action_check_reports_the_worker_and_the_camera(capsys: pytest.CaptureFixture[str]) -> None:
     code, out, _ = call(capsys, "vision", "check", "--set", "visionio.source=/dev/video9")
     assert code == 0 and "finds and recognises faces" in out and "/dev/video9" in out
 

@@ -37,9 +37,7 @@ def test_a_spike_still_too_young_keeps_a_rival_viable(play: Any) -> None:
         sim.emit(i)
         sim.advance(10.0)
         assert moments(sim, out) == [(3.0, "specific")]
-        assert (
-            pressed(sim) == []
-        )  # no rival came under pressure, so `general` waited for longer than the patience (1 s)
+        assert pressed(sim) == []  # without pressure, `general` waits for longer than the patience (1 s)
 
 
 def test_a_rule_waits_for_a_rival_whose_spike_in_another_group_is_still_too_young(play: Any) -> None:

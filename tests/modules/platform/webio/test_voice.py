@@ -402,7 +402,5 @@ def test_only_the_page_of_an_agent_that_hears_may_use_the_microphone() -> None:
         with TestClient(webio.app(Agent(*modules, webio)), base_url="http://127.0.0.1:8420") as client:
             headers = client.get("/").headers
             assert allowed in headers["permissions-policy"]
-            assert (
-                "script-src 'self'" in headers["content-security-policy"]
-            )  # this policy also allows the audio worklet
+            assert "script-src 'self'" in headers["content-security-policy"]  # this also allows the audio worklet
             assert client.get("/assets/worklet.js").status_code == 200
