@@ -49,7 +49,7 @@ def test_the_action_ask_shows_the_answer_with_its_source_confidence_and_candidat
     lines = out.splitlines()
     assert lines[0] == "The Zorbex engine was invented by Mira Kolm in 1987."
     assert lines[1].split() == ["source", "docs/engine.txt"]
-    assert "so it is sure (limits: sure 0.7, unsure 0.5)" in lines[2]
+    assert "(sure; the agent is sure from 0.7, unsure from 0.5)" in lines[2]
     assert lines[4].split()[1] == "100%"
 
 

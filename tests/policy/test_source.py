@@ -47,10 +47,10 @@ def test_every_access_of_a_rule_to_its_context_is_found() -> None:
     assert (list(found.emits), list(found.payloads), found.forgotten) == ([done], [late], {})
     first = everything.__code__.co_firstlineno
     assert faults == [
-        f"reads demo:lit (line {first + 1}) without declaring it: the rule needs reads=demo.lit",
+        f"reads demo:lit (line {first + 1}) without declaring it: declare reads=demo.lit",
         f"writes demo:face (line {first + 2}), demo:mood (line {first + 3}), demo:people (line {first + 4}) without "
-        "declaring it: the rule needs writes=(demo.face, demo.mood, demo.people)",
-        f"emits demo:done (line {first + 6}) without declaring it: the rule needs emits=demo.done",
+        "declaring it: declare writes=(demo.face, demo.mood, demo.people)",
+        f"emits demo:done (line {first + 6}) without declaring it: declare emits=demo.done",
         f"asks for the payload of demo:late (line {first + 6}), which is not in its condition: write when=... | demo.late",
     ]
 
@@ -210,7 +210,7 @@ def test_the_advice_gives_a_built_in_flag_as_rs_dot_name() -> None:
     async def look(ctx: Any) -> None:
         ctx[rs.pressure]
 
-    assert acts(look)[1][0].endswith("the rule needs reads=rs.pressure")
+    assert acts(look)[1][0].endswith("declare reads=rs.pressure")
 
 
 HAVE_LIGHT = False

@@ -152,7 +152,7 @@ def _ask(settings: Settings, question: str) -> int:
     sure, unsure = settings.sure, settings.unsure
     how = "sure" if answer.confidence >= sure else "unsure" if answer.confidence >= unsure else "silent"
     print(f"{printable(answer.text)}\n  source      {printable(answer.source)}")
-    print(f"  confidence  {answer.confidence:.2f}, so it is {how} (limits: sure {sure}, unsure {unsure})")
+    print(f"  confidence  {answer.confidence:.2f} ({how}; the agent is sure from {sure}, unsure from {unsure})")
     print("  read        score  covers")
     for candidate in answer.candidates:
         text = printable(candidate.text)

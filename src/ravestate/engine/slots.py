@@ -144,7 +144,7 @@ def _mark_write(slot: SlotPlan, run: Activation | None) -> None:
     if run is not None:
         if slot.index not in run.clause.rule.slotset:
             raise UndeclaredError(
-                f"rule {run.clause.rule.name} wrote {slot.name} without declaring it: the rule needs writes={slot.name}"
+                f"rule {run.clause.rule.name} wrote {slot.name} without declaring it: declare writes={slot.name}"
             )
         run.wrote = True
 

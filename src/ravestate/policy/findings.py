@@ -121,7 +121,7 @@ def _unreachable(policy: Plans) -> Iterator[Finding]:
                 rule.name,
                 f"rule {rule.name} waits for a signal that only other writers of {slots} raise, and a causal group "
                 "allows only one write of a slot (L19): add .detached() to this signal, or detached=True to the rule "
-                "that raises this signal",
+                "that raises it",
             )
 
 

@@ -84,7 +84,7 @@ def undeclared(rule: RulePlan, acts: Acts) -> Iterator[str]:
             names = [spelt(thing.name, home) for thing in (*own, *new)]
             argument = names[0] if len(names) == 1 else f"({', '.join(names)})"
             places = ", ".join(f"{thing.name} (line {line})" for thing, line in new.items())
-            yield f"{what} {places} without declaring it: the rule needs {what}={argument}"
+            yield f"{what} {places} without declaring it: declare {what}={argument}"
     heard = {need.signal.signal for clause in rule.clauses for need in clause.needs}
     for signal, line in acts.payloads.items():
         if signal not in heard:
