@@ -1,4 +1,4 @@
-"""An answer fits the qualifiers of its question, and can compare two things. ``thread_ship_rows`` has more questions."""
+"""An answer fits the qualifiers of its question, and can compare two things. `tests/quality` has more questions."""
 
 from collections.abc import Iterator
 
