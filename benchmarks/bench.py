@@ -14,7 +14,7 @@ __all__ = ["Bench"]
 
 
 class Bench(contextlib.ExitStack):
-    """One question's contestants; they end with the context manager.
+    """The contestants of one question. Leaving the ``with`` block ends their processes.
 
     Args:
         quick: Whether to repeat less often.
@@ -26,7 +26,7 @@ class Bench(contextlib.ExitStack):
         self.quick = quick
 
     def rounds(self, many: int, few: int = 3) -> Iterator[int]:
-        """Yield the numbers of the repetitions. In each, every contestant runs once, so that noise hits all alike."""
+        """Yield the numbers of the repetitions. Run every contestant in each one, so that noise hits all alike."""
         total = few if self.quick else many
         for number in range(total):
             self.progress(f"round {number + 1} of {total}")

@@ -84,6 +84,6 @@ def measured(
     target: str = "",
     reach: Callable[[float], bool] | None = None,
 ) -> Figure:
-    """Return a figure of ours alone; the target concerns the value."""
+    """Return a figure of Ravestate alone; the target concerns the value."""
     spread = Spread.of(ours)
     return Figure(question, what, unit, spread, target=target, reached=None if reach is None else reach(spread.median))

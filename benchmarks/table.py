@@ -32,7 +32,7 @@ def write_page(path: Path, machine: str, figures: Sequence[Figure]) -> None:
     """Put the table of each question into a Markdown page that has the comment ``<!-- figures of QUESTION -->``.
 
     Raises:
-        ValueError: The page has no place for any of the questions.
+        ValueError: The page has such a comment for none of the questions.
     """
     page = path.read_text(encoding="utf-8")
     found = False

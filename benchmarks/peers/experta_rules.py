@@ -14,7 +14,7 @@ class Signal(Fact):
 
 
 def engine_of(k: int, said: list[str]) -> KnowledgeEngine:
-    """Return an engine with the chain: the same rules as for CLIPS."""
+    """Return an engine with the same chain of rules as CLIPS (``clips_rules.py``)."""
     members = {}
 
     def hop(self: KnowledgeEngine, number: int, text: str) -> None:

@@ -13,7 +13,7 @@ Seconds = float
 
 
 class Agent:
-    """A module with the chain. It notes the inputs and the answers.
+    """A module with a chain of rules (see ``questions/answer.py``). `said` has the answers.
 
     Args:
         k: The length of the chain.
@@ -100,14 +100,14 @@ def answer(k: int, inputs: int, unrelated: int = 0, threads: bool = False) -> di
             answered.append(await agent.turn(context, f"word {n}", f"answer word {n}"))
             await context.quiet()
             turns.append(time.perf_counter() - begin)
-            assert len(agent.said) == 1, agent.said  # and the fallback rule has not answered late
+            assert len(agent.said) == 1, agent.said  # a second text would be a late answer of the fallback rule
         return {"answered": answered, "turn": turns}
 
     return stage.run(measure())
 
 
 def simulated(k: int, inputs: int) -> list[Seconds]:
-    """Measure the same in virtual time, without turns of the loop: the time of the engine alone."""
+    """Measure the same inputs in virtual time, with `simulate`."""
     agent = Agent(k)
     times = []
     with simulate(agent.module, trace=False) as sim:

@@ -1,7 +1,7 @@
 """The paper's reference implementation (Ravestate 0.7): states for rules, properties for slots, 20 ticks a second.
 
-The setup is that of its own modules: a module in a ``with`` block, a context by the module's name, and input through
-``ravestate_rawio.say``.
+The setup follows the implementation's own modules: a module in a ``with`` block, a context by the module's name, and
+input through ``ravestate_rawio.say``.
 """
 
 import random
@@ -22,7 +22,7 @@ serial = 0  # the modules live in one global registry, so each module needs a na
 
 
 class Agent:
-    """A running context with the chain. It notes the inputs and the answers."""
+    """A context with a chain of rules (see ``questions/answer.py``). `said` has the answers."""
 
     def __init__(self, k: int, unrelated: int) -> None:
         global serial

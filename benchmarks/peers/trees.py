@@ -1,8 +1,8 @@
 """py-trees, behaviour trees in Python: each input is one tick of a tree.
 
 A tree has no rules, and nothing competes: the order in the tree decides. A sequence of k steps passes the input on over
-the blackboard, then the answer follows; the fallback is the second child of a selector. The tree does less than the other
-contestants: it does not find out which steps the input concerns.
+the blackboard, and the last step answers. The fallback is the second child of a selector. The tree does less than the
+other contestants: it does not find out which steps the input concerns.
 """
 
 import itertools

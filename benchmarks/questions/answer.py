@@ -20,11 +20,11 @@ FURTHER = {
     "experta": "experta_rules.py",
     "py-trees, a fixed order": "trees.py",
 }
-"""Peers without a target: name → file in ``peers``."""
+"""For each peer without a target: its name in the table, and its file in ``peers``."""
 
 COMPILED_TARGETS = {1: 0.6, 4: 0.4, 8: 0.3}
 PURE_TARGETS = {1: 2.6, 4: 1.9, 8: 1.6}
-"""The targets of the two builds: our time to that of CLIPS."""
+"""For each length of the chain, in both builds: the maximum of our time divided by the time of CLIPS."""
 
 LIVED_IN = 3000
 """The number of inputs before the second measurement of CLIPS, because clipspy slows down with every input."""
@@ -36,7 +36,7 @@ def at_most(ratio: float) -> bool:
 
 
 def ask(bench: Bench) -> Iterable[Figure]:
-    """Compare ours with CLIPS (the target), the floor and the reference implementation."""
+    """Compare Ravestate with CLIPS (the target), the other peers, the floor and the reference implementation."""
     ours, clips, floor, reference = bench.ours(), bench.clips(), bench.callbacks(), bench.reference()
     further = {name: bench.peer(script) for name, script in FURTHER.items()}
     goals = COMPILED_TARGETS if build() == COMPILED else PURE_TARGETS

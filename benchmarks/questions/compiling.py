@@ -1,8 +1,8 @@
 """How long does it take to compile a policy?
 
 The policy has the agent of ``answer`` (a chain of one rule), and many rules with a signal of their own. The time of the
-declarations does not count. CLIPS builds as many rules from text. A second row shows the growth: the time for each rule
-of many, compared with the time for each rule of few.
+declarations does not count. CLIPS builds as many rules from text. The second row compares the time per rule in a large
+policy with that in a small one.
 """
 
 from __future__ import annotations
@@ -28,7 +28,7 @@ def compiling(unrelated: int) -> float:
 
 
 def ask(bench: Bench) -> Iterable[Figure]:
-    """Compare many rules with CLIPS, and the time for each rule in a large policy with that in a small one."""
+    """Compare many rules with CLIPS, and the time per rule in a large policy with that in a small one."""
     ours, clips = bench.ours("benchmarks.questions.compiling"), bench.clips()
     many, few, theirs = [], [], []
     for _ in bench.rounds(5, 2):

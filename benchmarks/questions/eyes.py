@@ -1,8 +1,8 @@
 """How many pictures a second does the agent look at, and what do its eyes cost the conversation?
 
-The camera is a video of 30 pictures a second: a person who sways before it. The agent looks at the video while users
-ask questions. Agents with and without a camera take turns. The time of an answer ends when the agent has understood the
-words; the work is the same in both agents.
+The camera is a video of 30 pictures a second: a person who sways. The agent looks at the video while users ask
+questions. Agents with and without a camera take turns. The time of an answer ends when the agent has understood the
+words, because this work is the same with and without a camera.
 """
 
 from __future__ import annotations
@@ -52,7 +52,7 @@ def ask(bench: Bench) -> Iterable[Figure]:
     with tempfile.TemporaryDirectory() as place:
         video = Path(place) / "camera.mp4"
         subprocess.run([eyes_python(), "-c", VIDEO, str(PHOTO), str(video)], check=True)
-        eye = Eye()  # keeps the worker while agents come and go
+        eye = Eye()  # keeps the vision worker alive between two agents
         try:
             eye.process.start()
             slower: list[float] = []

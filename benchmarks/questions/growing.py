@@ -139,7 +139,7 @@ def burst(size: int, *, writes: bool) -> float:
 
 
 def timed(engine: Engine, given: Sequence[Event], expected: int, until: float = 0.0) -> float:
-    """Return the seconds of processor time from events to their runs; at `until`, the wait for rivals ends."""
+    """Return the seconds of processor time from events to their runs. The deadlines up to `until` (seconds) count."""
     begin = time.process_time()
     runs = play(engine, given)
     while (due := engine.next_deadline()) is not None and due <= until:
@@ -217,7 +217,7 @@ WORKLOADS: dict[str, tuple[int, Callable[[int], float]]] = {
     "independent writers": (RULES, independent),
     "cliques": (90, cliques),
 }
-"""Workload → the size of the smaller run, and the seconds of processor time at a size."""
+"""For each workload: its smaller size, and a function that returns the seconds of processor time at a given size."""
 
 
 def grow(workload: str, size: int) -> float:

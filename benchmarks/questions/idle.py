@@ -15,7 +15,7 @@ NONE = 0.001
 
 
 def ask(bench: Bench) -> Iterable[Figure]:
-    """Compare ours with the reference implementation, which ticks 20 times a second."""
+    """Compare Ravestate with the reference implementation, which ticks 20 times a second."""
     seconds = bench.several(5, 3)
     for unrelated in (0, 500):
         ours, theirs = [], []

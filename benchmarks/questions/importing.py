@@ -1,7 +1,6 @@
 """How long does the import take, and which packages does it load?
 
-The figure is the wall time of an interpreter that imports Ravestate and ends, minus that of an interpreter that only
-ends.
+The figure is the wall time of an interpreter that imports Ravestate, minus that of an interpreter that imports nothing.
 """
 
 from __future__ import annotations
@@ -30,7 +29,7 @@ print(*sorted(roots - set(sys.stdlib_module_names) - {'ravestate'}))
 
 
 def ask(bench: Bench) -> Iterable[Figure]:
-    """Compare ours with the reference implementation, and count the third-party packages."""
+    """Compare Ravestate with the reference implementation, and count the third-party packages."""
     reference = bench.reference_interpreter()
     ours, theirs = [], []
     for _ in bench.rounds(15, 5):

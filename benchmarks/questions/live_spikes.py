@@ -1,6 +1,6 @@
 """What does a spike cost when many are alive?
 
-There are three shapes, each with 10,000 live spikes against 100:
+Each of three shapes runs with 10,000 and with 100 live spikes:
 
 - Burst: all spikes are raised at once, and one rule handles each.
 - One more: the rule of the spikes waits for a second signal that never comes; one more spike arrives.

@@ -1,4 +1,4 @@
-"""What does an agent add to a message of ROS, and does it keep up?
+"""How much time does an agent add to a message of ROS, and does it keep up with fast topics?
 
 - Share: a text goes to an echo node and back, and then a rule sends the next text. The floor is a bare rospy or rclpy
   node that does the same. Our share is the difference: the agent, and in ROS 2 two hops to the bridge process.
@@ -241,7 +241,7 @@ def look(version: int, settings: dict[str, Any], count: int) -> dict[str, float]
                 await asyncio.sleep(0.5)
                 stalled = 0 if len(views) > before else stalled + 0.5
             copies = (_written(made.pid) - begin) / (max(1, len(views)) * SIZE)
-            copies += sum(not view for view in views) / max(1, len(views))  # the agent's own
+            copies += sum(not view for view in views) / max(1, len(views))  # copies that the agent itself makes
             return {"lost": count - len(views), "copies": copies}
 
     return asyncio.run(main())

@@ -25,7 +25,7 @@ from benchmarks.peers.wire import serve
 from ravestate.cli.complete import COMPLETE
 
 DECIDE, PROMPT, HOLD = 0.015, 1.5, 500e6
-"""Seconds from input to decision, seconds to the first prompt, and bytes."""
+"""The limits: seconds from input to decision, seconds to the first prompt, and bytes of memory."""
 
 PATIENCE = 60.0
 """Seconds after which an agent without a decision has failed."""
@@ -78,7 +78,7 @@ def decide(rounds: int) -> dict[str, list[float]]:
             settings = {"idle": {"bored_after": 3600.0}, "emotion": {"emoji": False}, "wildtalk": {"backend": "listen"}}
             async with rs.Context(*parts, settings=settings, seed=1) as context:
                 context.observe(watch)
-                for number in range(rounds + 1):  # the first loads everything
+                for number in range(rounds + 1):  # the first round loads everything, and is not measured
                     name, town, thing, country = WORDS[number]
                     for template in UTTERANCES:
                         text = template.format(name=name, town=town, thing=thing, country=country)
@@ -88,7 +88,7 @@ def decide(rounds: int) -> dict[str, list[float]]:
                         took = await asyncio.wait_for(decided, PATIENCE) - begin
                         if number:
                             times.append(took)
-                        context.put(rawio.input, "")  # interrupts the model
+                        context.put(rawio.input, "")  # interrupts the answer
                         await context.quiet()
                 pages = int(Path("/proc/self/statm").read_text().split()[1])  # noqa: ASYNC240  # no file of a disk
                 held.append(float(pages * os.sysconf("SC_PAGE_SIZE")))

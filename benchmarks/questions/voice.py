@@ -3,10 +3,9 @@
 - Words: the share of wrong words in recordings of people (LibriVox, from Debian's pocketsphinx-testdata).
 - Wait: the time from the end of the user's speech to the first sound of the answer, on the clock of this machine. It has
   four parts: the pause that the settings demand, recognition, synthesis, and the rest, which is our own share.
-- End of turn: complete sentences, and beginnings of sentences that go on after a pause of a second, as a recording. A
-  false cut ends the turn in such a pause. With a missed end, the agent waits for the longest pause after a complete
-  sentence.
-- Interruptions, back-channels and the echo: on the time line of a recording, in virtual time.
+- End of turn: a recording has complete sentences, and sentences with a pause of a second in the middle. A false cut
+  ends the turn in such a pause. With a missed end, the agent waits for the longest pause after a complete sentence.
+- Interruptions, back-channels and the echo are measured on the time line of a recording, in virtual time.
 - Heard: the words of an interrupted story that the user heard, according to the agent and according to the
   loudspeaker's file. A word counts if at least half of it is in the file.
 """

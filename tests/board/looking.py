@@ -1,4 +1,4 @@
-"""Clients of the board for tests. They speak its protocol with an application in memory, in virtual time."""
+"""Clients of the board for tests. They speak the board's protocol with an application in memory, in virtual time."""
 
 import asyncio
 import contextlib

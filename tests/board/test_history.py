@@ -32,12 +32,12 @@ def test_a_file_that_merges_groups_in_a_circle_can_still_be_read() -> None:
     ("time", "runs"),
     [(0.5, False), (1.0, True), (2.5, True), (5.0, True), (5.5, False), (7.0, True), (9.0, True)],
 )
-def test_ran_is_true_between_the_start_and_the_end_of_a_run(time: float, runs: bool) -> None:
+def test_the_method_ran_returns_true_between_the_start_and_the_end_of_a_run(time: float, runs: bool) -> None:
     records = [
         born(1, "m:s"),
         born(2, "m:s", group=2),
         *run(1, "m:r", (1,), 1.0, 5.0),
-        *run(2, "m:r", (1,), 2.0, 2.2),  # it runs in parallel
+        *run(2, "m:r", (1,), 2.0, 2.2),  # a second run, at the same time
         *run(3, "m:r", (2,), 5.2, 6.0),  # the rule runs for another cause
         *run(4, "m:r", (1,), 7.0, None),
     ]
@@ -45,7 +45,7 @@ def test_ran_is_true_between_the_start_and_the_end_of_a_run(time: float, runs: b
     assert not History(records, 1).ran("m:other", time)
 
 
-def test_before_names_the_rule_that_raised_a_spike_of_the_run_in_this_group() -> None:
+def test_the_method_before_names_the_rule_of_this_group_that_raised_a_spike_of_the_run() -> None:
     records = [
         born(1, "m:boot", group=2),
         *run(1, "m:warm_up", (1,), 0.0, 0.0),
@@ -58,10 +58,10 @@ def test_before_names_the_rule_that_raised_a_spike_of_the_run_in_this_group() ->
     ]
     history = History(records, 3)
     assert [history.before(number) for number in (3, 4, 2)] == ["m:classify", "", ""]
-    assert [history.before(number) for number in (0, 99)] == ["", ""]  # unknown
+    assert [history.before(number) for number in (0, 99)] == ["", ""]  # no run has these numbers
 
 
-def test_answered_returns_the_run_that_was_the_first_to_end_for_this_cause() -> None:
+def test_the_method_answered_returns_the_run_that_ended_first_for_this_cause() -> None:
     records = [
         born(1, "m:s"),
         born(2, "m:s", group=2),
@@ -81,14 +81,14 @@ def test_answered_returns_the_run_that_was_the_first_to_end_for_this_cause() -> 
     assert history.answered({"m:other": [{"m:s"}]}) is None
 
 
-def test_value_returns_the_last_write_to_a_slot_up_to_a_time() -> None:
+def test_the_method_value_returns_the_last_write_to_a_slot_up_to_a_time() -> None:
     history = History([born(1, "m:s"), *(Set(time, "m:x", time, 0) for time in (1.0, 2.0, 2.5))], 1)
     found = [history.value("m:x", time) for time in (0.5, 1.0, 2.2, 9.0)]
     assert [None if write is None else write.value for write in found] == [None, 1.0, 2.0, 2.5]
     assert history.value("m:y", 9.0) is None
 
 
-def test_lacks_stays_unchanged_when_an_attempt_loses_all_its_spikes_together() -> None:
+def test_the_attribute_lacks_of_an_attempt_stays_when_the_attempt_loses_all_its_spikes_together() -> None:
     held = [Held(0.0, 7, "m:r", 0, 1, "m:s", ("m:t", "m:u")), Held(1.0, 7, "m:r", 0, 2, "m:t", ("m:u",))]
     lost = [GaveUp(2.0, 7, "m:r", spike, signal, "age") for spike, signal in ((1, "m:s"), (2, "m:t"))]
     history = History([born(1, "m:s"), born(2, "m:t"), *held, *lost], 1)

@@ -33,7 +33,7 @@ def clocks(monkeypatch: pytest.MonkeyPatch, tmp_path: Path) -> Clocks:
     return clocks
 
 
-def test_share_measures_the_idle_time_since_its_last_call(clocks: Clocks) -> None:
+def test_the_method_share_measures_the_idle_time_since_its_last_call(clocks: Clocks) -> None:
     spare = IdleShare()
     clocks.advance(2.0, computed=0.5)
     assert spare.share() == 0.75

@@ -72,7 +72,7 @@ def emit(signal: rs.Signal[Any], holds: object = None, **payload: Any) -> None:
         (lamp.true, {"payload": True}),
     ],
 )
-def test_a_fitting_payload_is_accepted(signal: rs.Signal[Any], payload: dict[str, Any]) -> None:
+def test_a_payload_that_fits_its_signal_is_accepted(signal: rs.Signal[Any], payload: dict[str, Any]) -> None:
     emit(signal, **payload)
 
 
@@ -215,7 +215,7 @@ async def test_the_board_cannot_overwrite_the_page_of_a_visitor() -> None:
 
 
 @in_virtual_time
-async def test_say_treats_a_text_as_if_the_visitor_had_typed_it() -> None:
+async def test_the_command_say_treats_a_text_as_if_the_visitor_had_typed_it() -> None:
     async with board() as app, Visit(app) as visit:
         await visit.hello()
         async with Look(app) as look:

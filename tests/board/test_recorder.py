@@ -198,7 +198,7 @@ async def test_no_spike_after_a_gap_is_recorded_twice() -> None:
 
 
 @in_virtual_time
-async def test_shortening_during_a_gap_adds_no_missed_spikes() -> None:
+async def test_dropping_old_records_during_a_gap_adds_no_missed_spikes() -> None:
     context, tick = ticking()
     recorder = Recorder(context, burst=60, rate=0, spare=0)
     async with context:

@@ -97,7 +97,7 @@ def test_lone_surrogates_are_replaced() -> None:
     assert well_formed("café 👋🏽") == "café 👋🏽"
 
 
-def test_not_json_is_true_for_values_that_json_cannot_express() -> None:
+def test_the_function_not_json_returns_true_for_values_that_json_cannot_express() -> None:
     assert (
         not_json(Loud())
         and not_json({"a": [Loud()]})

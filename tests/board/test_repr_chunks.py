@@ -76,7 +76,7 @@ VALUES = st.recursive(
 
 
 @given(VALUES)
-def test_the_joined_chunks_equal_pythons_repr(value: object) -> None:
+def test_the_chunks_together_equal_the_repr_of_python(value: object) -> None:
     assert "".join(repr_chunks(value)) == repr(value)
 
 

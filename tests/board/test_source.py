@@ -38,7 +38,7 @@ def test_a_call_whose_caller_was_cancelled_still_ends_quietly(work: Callable[[],
             return work()
 
         asking = asyncio.create_task(outside_of_any_task(call))
-        if not by_the_call:  # after the caller has requested the call, and before the call is made
+        if not by_the_call:  # cancel the caller between its request and the call
             asyncio.get_running_loop().call_soon(asking.cancel)
         await passing(1)
         with contextlib.suppress(asyncio.CancelledError):

@@ -94,7 +94,7 @@ GOOD: dict[str, Any] = {"format": "ravestate-trace", "v": 1, "records": []}
         ("[" + "[]," * MOST_VALUES + "[]]", "it has more than 6,000,000 values"),
     ],
 )
-def test_a_file_without_a_trace_is_refused(text: Any, words: str) -> None:
+def test_a_file_that_is_not_a_valid_trace_is_refused(text: Any, words: str) -> None:
     with pytest.raises(ValueError) as caught:
         read_trace(text if isinstance(text, str) else json.dumps(text))
     assert words in str(caught.value)

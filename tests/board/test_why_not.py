@@ -229,7 +229,7 @@ def test_a_detached_rule_does_not_count_as_the_answer_to_the_cause(stage: Stage,
         kept = [data_of(record) for record in sim.trace]
         for record in kept:
             if record["kind"] == "passed" and not named:
-                del record["by"], record["run"]  # as in older files
+                del record["by"], record["run"]  # older files lack these fields
         records = [record for record in map(checked_record, kept) if not isinstance(record, Gap)]
         spike = spike_of(sim, "demo:input:changed")
         found = why_not(records, describe(sim.context.policy), "demo:too_late", spike)
@@ -701,7 +701,7 @@ def test_for_an_older_trace_without_run_numbers_why_not_names_only_the_rule(stag
         kept = [data_of(record) for record in sim.trace]
         for record in kept:
             if record["kind"] == "gaveup":
-                del record["run"]  # as in older files
+                del record["run"]  # older files lack this field
         records = [record for record in map(checked_record, kept) if not isinstance(record, Gap)]
         spike = spike_of(sim, "demo:input:changed")
         found = why_not(records, describe(sim.context.policy), "demo:talk", spike)

@@ -280,7 +280,7 @@ def test_ending_immediately_does_not_wait_for_utterances() -> None:
     converse(talk, talker)
 
 
-def test_until_agent_leaves_returns_only_if_the_agent_itself_ends_the_conversation() -> None:
+def test_the_method_until_agent_leaves_returns_only_if_the_agent_itself_ends_the_conversation() -> None:
     module = rs.Module("module", requires=[rawio])
 
     @module.rule(when=rawio.input.changed, writes=rawio.output)

@@ -27,13 +27,13 @@ def recording(tmp_path: Path, name: str, seed: int = 2) -> str:
     return str(file)
 
 
-def test_guess_names_the_activity(tmp_path: Path, folder: str, capsys: pytest.CaptureFixture[str]) -> None:
+def test_the_action_guess_names_the_activity(tmp_path: Path, folder: str, capsys: pytest.CaptureFixture[str]) -> None:
     assert main(["activity", "guess", recording(tmp_path, "rowing"), "--folder", folder]) == 0
     line = capsys.readouterr().out.strip()
     assert line.endswith("%  rowing")
 
 
-def test_guess_names_a_movement_that_teach_has_learnt(
+def test_the_action_guess_names_a_movement_that_teach_has_learnt(
     tmp_path: Path, folder: str, capsys: pytest.CaptureFixture[str]
 ) -> None:
     file = recording(tmp_path, "skiing")

@@ -1,4 +1,4 @@
-"""The arguments that name an agent: names of modules, agent files and settings. Each mistake gets one line."""
+"""The arguments that name an agent: names of modules, agent files, settings. Each mistake gives a one-line message."""
 
 import re
 from importlib.metadata import EntryPoint
@@ -342,7 +342,7 @@ def test_an_unreadable_agent_file_is_refused_with_a_message(folder: Path, capsys
 # ---------------------------------------------------------------------------------------- settings
 
 
-def test_set_overrides_the_environment_which_overrides_the_file(
+def test_the_option_set_overrides_the_environment_which_overrides_the_file(
     folder: Path, capsys: Capture, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     write(folder / "hello.py", HELLO)
@@ -366,7 +366,7 @@ def test_set_overrides_the_environment_which_overrides_the_file(
         ("hello.words=[a, b]", "Hello 1.0 ('a', 'b')"),
     ],
 )
-def test_set_reads_text_for_a_text_field_and_yaml_for_other_fields(
+def test_the_option_set_reads_text_for_a_text_field_and_yaml_for_other_fields(
     text: str, said: str, folder: Path, capsys: Capture
 ) -> None:
     write(folder / "hello.py", HELLO)
@@ -387,7 +387,7 @@ def test_the_function_with_required_adds_the_required_modules_even_in_a_cycle(fo
 
 
 @pytest.mark.parametrize("text", ["hello", "hello.greeting", "greeting=x", "=x", ".=x", "hello.=x", ".greeting=x"])
-def test_a_malformed_set_is_refused_with_a_message(text: str, folder: Path, capsys: Capture) -> None:
+def test_a_malformed_option_set_is_refused_with_a_message(text: str, folder: Path, capsys: Capture) -> None:
     assert refused(capsys, "rawio", "--set", text) == (
         f"--set {text}: write --set module.key=value, e.g. --set idle.bored_after=10"
     )
@@ -426,6 +426,6 @@ def test_a_value_that_does_not_fit_its_setting_is_refused(text: str, fault: str,
     assert fault in refused(capsys, "idle", "rawio", "--set", text, code=2)
 
 
-def test_options_returns_the_arguments_for_a_context() -> None:
+def test_the_method_options_returns_the_arguments_for_a_context() -> None:
     options: Any = spec.AgentSpec([], {"a": {}}, 3, 0.5).options()
     assert options == {"settings": {"a": {}}, "seed": 3, "patience": 0.5}

@@ -94,7 +94,7 @@ def test_without_modules_the_command_serves_the_complete_agent(tmp_path: Path) -
 
 @pytest.fixture
 def served(monkeypatch: pytest.MonkeyPatch) -> list[Agent]:
-    """Return a list to which each command adds the agent that it serves. The server ends at once."""
+    """Return a list to which each command adds the agent that it serves. The server ends immediately."""
     agents: list[Agent] = []
 
     class Stub:
@@ -162,7 +162,7 @@ def test_the_complete_agent_has_visionio_only_if_the_eyes_are_set_up(
     assert {module.name for module in served[0].policy.modules} & {"visionio", "charades"} == seen
 
 
-def test_open_shows_a_recorded_trace_without_an_agent(tmp_path: Path) -> None:
+def test_the_option_open_shows_a_recorded_trace_without_an_agent(tmp_path: Path) -> None:
     recorded(tmp_path / "trace.json")
     command = Command("--open", str(tmp_path / "trace.json"))
     try:

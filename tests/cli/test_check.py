@@ -165,4 +165,4 @@ def test_the_built_in_modules_have_no_faults(name: str, capsys: Capture) -> None
     code, out, _ = call(capsys, "check", name)
     assert code == 0
     kinds = {line.split(":")[0] for line in out.splitlines()[:-1]}
-    assert kinds <= {"unheard"}  # signals for rules of other modules
+    assert kinds <= {"unheard"}  # such a signal is for rules of other modules

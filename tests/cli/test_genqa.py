@@ -40,7 +40,7 @@ def test_documents_can_be_indexed_listed_and_forgotten(docs: Path, capsys: pytes
     assert "nothing was read from docs/tram.md" in errors
 
 
-def test_ask_shows_the_answer_with_its_source_confidence_and_candidates(
+def test_the_action_ask_shows_the_answer_with_its_source_confidence_and_candidates(
     docs: Path, capsys: pytest.CaptureFixture[str]
 ) -> None:
     call(capsys, "genqa", "index", "docs")
@@ -53,7 +53,7 @@ def test_ask_shows_the_answer_with_its_source_confidence_and_candidates(
     assert lines[4].split()[1] == "100%"
 
 
-def test_ask_works_without_quotation_marks_and_without_documents(
+def test_the_action_ask_works_without_quotation_marks_and_without_documents(
     docs: Path, capsys: pytest.CaptureFixture[str]
 ) -> None:
     assert call(capsys, "genqa", "ask", "what", "is", "the", "capital", "of", "Peru")[1].startswith(
@@ -61,7 +61,7 @@ def test_ask_works_without_quotation_marks_and_without_documents(
     )
 
 
-def test_ask_says_why_there_is_no_answer(docs: Path, capsys: pytest.CaptureFixture[str]) -> None:
+def test_the_action_ask_says_why_there_is_no_answer(docs: Path, capsys: pytest.CaptureFixture[str]) -> None:
     assert call(capsys, "genqa", "ask", "How are you?")[:2] == (
         0,
         "no answer: it is about the user or the agent\n",
@@ -144,7 +144,7 @@ def test_an_index_of_a_newer_version_is_refused_with_a_message(docs: Path, capsy
     assert "written by a newer Ravestate (format 99" in errors
 
 
-def test_list_without_documents_is_not_an_error(docs: Path, capsys: pytest.CaptureFixture[str]) -> None:
+def test_the_action_list_without_documents_is_not_an_error(docs: Path, capsys: pytest.CaptureFixture[str]) -> None:
     code, out, _ = call(capsys, "genqa", "list")
     assert code == 0
     assert out.startswith("nothing has been read yet: to read files into")

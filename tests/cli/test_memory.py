@@ -47,7 +47,7 @@ def file(folder: Path) -> Path:
     return path
 
 
-def test_list_shows_all_nodes(file: Path, capsys: Capture) -> None:
+def test_the_action_list_shows_all_nodes(file: Path, capsys: Capture) -> None:
     code, out, errors = call(capsys, "memory", "--path", str(file), "list")
     assert code == 0 and errors == f"5 nodes in {file.resolve()}\n"
     lines = [line.rsplit(maxsplit=1) for line in out.splitlines()]
@@ -57,7 +57,7 @@ def test_list_shows_all_nodes(file: Path, capsys: Capture) -> None:
     assert all(line[1].startswith(line[0].split()[0] + ":") for line in lines)
 
 
-def test_list_shows_the_nodes_of_a_type_or_counts_the_types(file: Path, capsys: Capture) -> None:
+def test_the_action_list_shows_the_nodes_of_a_type_or_counts_the_types(file: Path, capsys: Capture) -> None:
     assert call(capsys, "memory", "--path", str(file), "list", "Place")[1].split()[:2] == ["City", "London"]
     _, out, _ = call(capsys, "memory", "--path", str(file), "list", "--types")
     assert [line.split() for line in out.splitlines()] == [["City", "1"], ["Person", "4"]]
@@ -65,7 +65,7 @@ def test_list_shows_the_nodes_of_a_type_or_counts_the_types(file: Path, capsys: 
     assert code == 2 and errors == "ravestate memory: there is no type 'Persn'; did you mean 'Person'?\n"
 
 
-def test_show_finds_a_person_by_name_or_id(file: Path, capsys: Capture) -> None:
+def test_the_action_show_finds_a_person_by_name_or_id(file: Path, capsys: Capture) -> None:
     code, out, _ = call(capsys, "memory", "--path", str(file), "show", "ada ")
     first, *rest = out.splitlines()
     assert code == 0 and rest == ["  name: Ada", "  born: 1815-12-10", "  lives_in -> City London"]
@@ -83,7 +83,7 @@ def test_a_name_that_no_node_or_several_nodes_have_is_refused(file: Path, capsys
     assert code == 2 and "2 nodes are called 'Bob': give the id of one\n  Person:" in errors
 
 
-def test_load_restores_an_exported_memory(file: Path, folder: Path, capsys: Capture) -> None:
+def test_the_action_load_restores_an_exported_memory(file: Path, folder: Path, capsys: Capture) -> None:
     _, out, _ = call(capsys, "memory", "--path", str(file), "export")
     document = json.loads(out)
     assert len(document["nodes"]) == 5 and len(document["relations"]) == 2
@@ -112,7 +112,7 @@ def test_messages_name_files_that_cannot_be_written_or_read(file: Path, folder: 
 
 
 @pytest.mark.parametrize("answer", ["n\n", "", "\n", "yess\n"])
-def test_forget_asks_first_and_forgets_no_person_without_a_yes(
+def test_the_action_forget_asks_first_and_forgets_no_person_without_a_yes(
     file: Path, capsys: Capture, monkeypatch: pytest.MonkeyPatch, answer: str
 ) -> None:
     monkeypatch.setattr(sys, "stdin", io.StringIO(answer))
@@ -122,7 +122,9 @@ def test_forget_asks_first_and_forgets_no_person_without_a_yes(
     assert call(capsys, "memory", "--path", str(file), "show", "Ada")[0] == 0
 
 
-def test_forget_removes_a_person_after_a_yes(file: Path, capsys: Capture, monkeypatch: pytest.MonkeyPatch) -> None:
+def test_the_action_forget_removes_a_person_after_a_yes(
+    file: Path, capsys: Capture, monkeypatch: pytest.MonkeyPatch
+) -> None:
     monkeypatch.setattr(sys, "stdin", io.StringIO("y\n"))
     code, out, _ = call(capsys, "memory", "--path", str(file), "forget", "Ada")
     assert code == 0 and out.endswith("forgot 2\n")
@@ -137,7 +139,7 @@ def test_forget_removes_a_person_after_a_yes(file: Path, capsys: Capture, monkey
 
 
 @pytest.mark.parametrize("answer", ["n\n", ""])
-def test_reset_asks_first_and_removes_no_file_without_a_yes(
+def test_the_action_reset_asks_first_and_removes_no_file_without_a_yes(
     file: Path, folder: Path, capsys: Capture, monkeypatch: pytest.MonkeyPatch, answer: str
 ) -> None:
     monkeypatch.setattr(sys, "stdin", io.StringIO(answer))
@@ -147,7 +149,7 @@ def test_reset_asks_first_and_removes_no_file_without_a_yes(
     assert sorted(folder.iterdir()) == [file, Path(f"{file}.sum")]
 
 
-def test_reset_removes_all_files_and_names_them(
+def test_the_action_reset_removes_all_files_and_names_them(
     file: Path, folder: Path, capsys: Capture, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     file.unlink()  # only the database file is missing, as after a crash
@@ -185,7 +187,7 @@ def test_an_export_is_readable_only_by_the_user_even_if_a_temporary_file_was_rea
     assert stat.S_IMODE((folder / "all.json").stat().st_mode) == 0o600
 
 
-def test_reset_removes_a_broken_memory(file: Path, capsys: Capture) -> None:
+def test_the_action_reset_removes_a_broken_memory(file: Path, capsys: Capture) -> None:
     file.write_bytes(b"no database at all " * 300)
     code, _, errors = call(capsys, "memory", "--path", str(file), "list")
     assert code == 1 and f"ravestate memory reset --path {file.resolve()}" in errors
@@ -193,7 +195,7 @@ def test_reset_removes_a_broken_memory(file: Path, capsys: Capture) -> None:
     assert not file.exists()
 
 
-def test_reset_refuses_a_memory_on_a_server(capsys: Capture) -> None:
+def test_the_action_reset_refuses_a_memory_on_a_server(capsys: Capture) -> None:
     code, _, errors = call(capsys, "memory", "--set", "ontology.url=bolt://localhost:1", "reset", "-y")
     assert code == 2 and "this memory is on a server" in errors
 

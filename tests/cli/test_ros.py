@@ -68,7 +68,7 @@ def ros(bus: str, *arguments: str) -> int:
     return main(["ros", *arguments, "--set", "ros2.backend=bus", "--set", f"ros2.bus={bus}"])
 
 
-def test_check_lists_the_bound_slots_and_says_how_to_fix_faults(
+def test_the_action_check_lists_the_bound_slots_and_says_how_to_fix_faults(
     bus: str, tmp_path: Path, capsys: pytest.CaptureFixture[str]
 ) -> None:
     (tmp_path / "agent.py").write_text(AGENT)
@@ -85,7 +85,7 @@ def test_check_lists_the_bound_slots_and_says_how_to_fix_faults(
     ]
 
 
-def test_check_looks_for_each_part_of_a_robot(bus: str, capsys: pytest.CaptureFixture[str]) -> None:
+def test_the_action_check_looks_for_each_part_of_a_robot(bus: str, capsys: pytest.CaptureFixture[str]) -> None:
     assert main(["ros", "check", "roboyio", "--set", "roboyio.robot=turtlebot", "--set", f"roboyio.bus={bus}"]) == 1
     lines = capsys.readouterr().out.splitlines()
     assert [line.split()[1] for line in lines] == [
@@ -94,7 +94,7 @@ def test_check_looks_for_each_part_of_a_robot(bus: str, capsys: pytest.CaptureFi
     assert "roboyio:speak      publisher of /speech/say (std_msgs/String): no subscribers" in lines[3]
 
 
-def test_topics_lists_topics_and_services(bus: str, capsys: pytest.CaptureFixture[str]) -> None:
+def test_the_action_topics_lists_topics_and_services(bus: str, capsys: pytest.CaptureFixture[str]) -> None:
     assert ros(bus, "topics", "--version", "2") == 0
     assert capsys.readouterr().out.splitlines() == [
         "topic    /chat  std_msgs/msg/String  1 publisher, 0 subscribers",
@@ -102,7 +102,7 @@ def test_topics_lists_topics_and_services(bus: str, capsys: pytest.CaptureFixtur
     ]
 
 
-def test_echo_prints_messages(bus: str, capsys: pytest.CaptureFixture[str]) -> None:
+def test_the_action_echo_prints_messages(bus: str, capsys: pytest.CaptureFixture[str]) -> None:
     assert ros(bus, "echo", "/chat", "-n", "1") == 0
     assert json.loads(capsys.readouterr().out) == {"data": "hello"}
 

@@ -79,7 +79,7 @@ def test_a_spoken_conversation_has_a_transcript_unless_another_platform_shows_th
 def test_a_platform_without_a_user_is_reported(
     monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
 ) -> None:
-    """Beside a platform that serves all users, the console and the voice have no user."""
+    """If another platform serves all users, the console and the voice have no user."""
     monkeypatch.setattr("ravestate.runtime.run.run", lambda *_, **__: None)
     code, _, errors = call(capsys, "run", "telegramio", "conio", "voiceio")
     assert code == 0 and "conio and voiceio will have no user: telegramio serves all users" in errors

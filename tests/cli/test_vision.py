@@ -28,7 +28,7 @@ def rows(text: str) -> list[tuple[str, str, str]]:
     return [(hit[1], hit[2], Path(hit[3]).stem) for hit in found if hit is not None]
 
 
-def test_the_action_who_names_a_face_after_learn_and_no_longer_after_forget(
+def test_vision_who_names_a_face_only_between_vision_learn_and_vision_forget(
     tmp_path: Path, capsys: pytest.CaptureFixture[str]
 ) -> None:
     memory = ("--path", str(tmp_path / "memory.lbug"))
@@ -69,7 +69,7 @@ def test_files_that_are_not_pictures_are_reported_and_other_files_are_read(
     ("files", "why"),
     [(("six",), "has 6 faces"), (("obama", "biden"), "shows a different person")],
 )
-def test_learn_refuses_a_picture_of_several_people_and_pictures_of_different_people(
+def test_vision_learn_refuses_a_picture_of_several_people_and_pictures_of_different_people(
     tmp_path: Path, capsys: pytest.CaptureFixture[str], files: tuple[str, ...], why: str
 ) -> None:
     memory = tmp_path / "memory.lbug"
@@ -77,7 +77,7 @@ def test_learn_refuses_a_picture_of_several_people_and_pictures_of_different_peo
     assert code == 2 and why in errors and not memory.exists()
 
 
-def test_check_reports_the_worker_and_the_camera(capsys: pytest.CaptureFixture[str]) -> None:
+def test_the_action_check_reports_the_worker_and_the_camera(capsys: pytest.CaptureFixture[str]) -> None:
     code, out, _ = call(capsys, "vision", "check", "--set", "visionio.source=/dev/video9")
     assert code == 0 and "finds and recognises faces" in out and "/dev/video9" in out
 

@@ -26,7 +26,7 @@ async def answer(ctx):
 """
 
 
-def test_check_lists_the_parts(folder: Path, capsys: pytest.CaptureFixture[str]) -> None:
+def test_the_action_check_lists_the_parts(folder: Path, capsys: pytest.CaptureFixture[str]) -> None:
     code, out, errors = call(capsys, "voice", "check", *TINY)
     assert (code, errors) == (0, "")
     rows = {line.split("  ")[0].strip(): line for line in out.splitlines()}
@@ -45,13 +45,13 @@ def test_check_lists_the_parts(folder: Path, capsys: pytest.CaptureFixture[str])
     assert "tiny.en" in out and "espeak:en" in out
 
 
-def test_check_says_how_to_get_what_is_missing(folder: Path, capsys: pytest.CaptureFixture[str]) -> None:
+def test_the_action_check_says_how_to_get_what_is_missing(folder: Path, capsys: pytest.CaptureFixture[str]) -> None:
     code, out, _ = call(capsys, "voice", "check", "--set", "voiceio.model=huge", "--set", "voiceio.voice=espeak")
     assert code == 1
     assert re.search(r"MISSING +recogniser .*ravestate voice get huge", out)
 
 
-def test_transcribe_prints_a_line_for_each_file(folder: Path, capsys: pytest.CaptureFixture[str]) -> None:
+def test_the_action_transcribe_prints_a_line_for_each_file(folder: Path, capsys: pytest.CaptureFixture[str]) -> None:
     person = PEOPLE / "librivox" / "sense_and_sensibility_01_austen_64kb-0930.wav"
     hiss = wav(folder / "hiss.wav", noise(1.0, 500))
     code, out, errors = call(capsys, "voice", "transcribe", str(person), str(hiss), *TINY)
@@ -70,7 +70,7 @@ def test_a_file_that_cannot_be_read_does_not_stop_the_others(folder: Path, capsy
     assert code == 1 and "Traceback" not in errors
 
 
-def test_say_writes_speech_to_a_file(folder: Path, capsys: pytest.CaptureFixture[str]) -> None:
+def test_the_action_say_writes_speech_to_a_file(folder: Path, capsys: pytest.CaptureFixture[str]) -> None:
     assert call(capsys, "voice", "say", "Good morning to everyone.", "-o", "out.wav", *TINY) == (0, "", "")
     with wave.open("out.wav") as file:
         assert file.getframerate() == 24000 and 0.8 < file.getnframes() / 24000 < 4
@@ -80,7 +80,7 @@ def test_say_writes_speech_to_a_file(folder: Path, capsys: pytest.CaptureFixture
     assert code == 2 and "ends in .wav" in errors
 
 
-def test_talk_holds_a_conversation(folder: Path, capsys: pytest.CaptureFixture[str]) -> None:
+def test_the_action_talk_holds_a_conversation(folder: Path, capsys: pytest.CaptureFixture[str]) -> None:
     (folder / "echo.py").write_text(STORYTELLER)
     wav(folder / "in.wav", track((0.5, "What do you think about the weather?"), length=3.0))
     code, out, errors = call(capsys, "voice", "talk", "in.wav", "-o", "out.wav", "./echo.py", *TINY)
@@ -124,7 +124,7 @@ def test_a_name_that_does_not_end_in_wav_is_refused_with_advice(
     assert code == 1 and "is a folder" in errors
 
 
-def test_talk_leaves_out_other_platforms(folder: Path, capsys: pytest.CaptureFixture[str]) -> None:
+def test_the_action_talk_leaves_out_other_platforms(folder: Path, capsys: pytest.CaptureFixture[str]) -> None:
     """The console would end the agent immediately, because its input is not a terminal."""
     (folder / "echo.py").write_text(STORYTELLER)
     (folder / "agent.yaml").write_text("modules: [conio, ./echo.py]\nsettings: {conio: {plain: true}}\n")
@@ -135,8 +135,10 @@ def test_talk_leaves_out_other_platforms(folder: Path, capsys: pytest.CaptureFix
 
 
 def test_ctrl_c_ends_a_conversation_cleanly(folder: Path) -> None:
-    """One rule waits for input in a thread, and so holds the virtual clock back. The end of the input ends the talk as
-    well, so the test keeps the input open until the signal has cancelled this rule."""
+    """The rule `keep` reads the standard input in a thread, so virtual time stands still until Ctrl-C cancels the rule.
+
+    The test keeps the input open until then, because the end of the input would end the conversation without Ctrl-C.
+    """
     (folder / "slow.py").write_text(
         STORYTELLER
         + """

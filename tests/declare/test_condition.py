@@ -20,7 +20,7 @@ def cheerful(value: object) -> bool:
     return value == "cheerful"
 
 
-def test_and_and_or_build_flat_trees_in_order() -> None:
+def test_the_operators_for_and_and_or_build_flat_trees_in_order() -> None:
     assert a & b & c == AllOf((a, b, c))
     assert a & (b & c) == AllOf((a, b, c))
     assert a | b | c == AnyOf((a, b, c))

@@ -1,4 +1,4 @@
-"""The built-in signals and flags (L22)."""
+"""The built-in signals and flags (law L22)."""
 
 import ravestate as rs
 from ravestate.declare.core import core

@@ -1,4 +1,4 @@
-"""Slots and their signals (L2), and the messages about a slot that is used as a signal."""
+"""Slots and their signals (law L2), and the messages about a slot that is used as a signal."""
 
 import copy
 import re

@@ -54,13 +54,14 @@ def test_a_picture_that_is_wide_enough_keeps_its_layers() -> None:
     arcs = [(0, v, 1, 1) for v in range(1, 40)]
     ranks = network_simplex(40, arcs)
     assert fit_to_screen(ranks, arcs, lambda _: (1000.0, 800.0)) == ranks
-    assert fit_to_screen(ranks, arcs, lambda _: (100.0, 700.0)) == ranks  # narrow, but no higher than a screen
-    assert fit_to_screen(ranks, arcs, lambda _: (100.0, 2000.0)) == ranks  # too high, but bounded layers are no lower
+    # A narrow picture keeps its layers if it is no higher than a screen, or if bounded layers would not make it lower.
+    assert fit_to_screen(ranks, arcs, lambda _: (100.0, 700.0)) == ranks
+    assert fit_to_screen(ranks, arcs, lambda _: (100.0, 2000.0)) == ranks
 
 
 @pytest.mark.parametrize("points", [20, 30, 60, 120])
 @pytest.mark.parametrize("pairs", [False, True], ids=["one-slot", "own-signals"])
-def test_the_neighbours_of_a_hub_fill_a_landscape_screen(points: int, pairs: bool) -> None:
+def test_a_hub_and_its_neighbours_fill_a_landscape_screen(points: int, pairs: bool) -> None:
     diagram = star(points, pairs)
     layout = laid_out(diagram)
     assert 1.0 <= layout.width / layout.height <= 2.0

@@ -71,7 +71,9 @@ async def test_a_visitor_talks_with_the_robot(stage: Stage, tmp_path: Path) -> N
             assert context.read(rawio.input) == "Hello, Roboy!"
             await page.get_by_role("button", name="Come into view").click()
             await expect(page.get_by_role("button", name="Leave")).to_be_visible()
-            await expect(page.locator("svg[role=img] rect[rx='13']")).to_have_count(1)  # the waving arm
+            await expect(page.locator("svg[role=img] rect[rx='13']")).to_have_count(
+                1
+            )  # this rectangle is the waving arm
             context.emit(emotion.surprised)
             await expect(face).to_have_attribute("data-face", "surprised")
             await page.wait_for_timeout(500)  # let the arm rise

@@ -110,9 +110,8 @@ async def test_push_to_talk_works_with_the_mouse_and_with_a_key(stage: Stage, tm
         # Hold the button for a while.
         await expect(bar(page)).to_contain_text(re.compile(r"(0\.[6-9]|[1-9]\.\d) seconds so far"))
         await page.mouse.up()
-        await expect(lines(page).nth(0)).to_have_text(
-            "You: a sound"
-        )  # the agent hears no more, although the recording continues
+        # The agent hears no more, although the recording continues.
+        await expect(lines(page).nth(0)).to_have_text("You: a sound")
         await expect(page.get_by_role("button", name="Hold to talk")).to_have_attribute("aria-pressed", "false")
         await page.get_by_role("button", name="Stop").click()
         await page.get_by_role("button", name="Hold to talk").focus()

@@ -33,7 +33,7 @@ class Museum:
     async def _answer(self, reader: asyncio.StreamReader, writer: asyncio.StreamWriter) -> None:
         await reader.readuntil(b"\r\n\r\n")
         body = (PAGE % self.chat).encode()
-        # A very strict policy: neither inline styles nor inline scripts.
+        # This strict policy allows neither inline styles nor inline scripts.
         policy = f"default-src 'none'; script-src {self.chat}; frame-src {self.chat}; img-src data:"
         writer.write(
             f"HTTP/1.1 200 OK\r\ncontent-type: text/html\r\ncontent-length: {len(body)}\r\n"

@@ -1,4 +1,4 @@
-"""The table of an activation's states. No sequence of events corrupts an engine (L12, L14, L17, L18)."""
+"""The table of an activation's states. No sequence of events corrupts an engine (laws L12, L14, L17, L18)."""
 
 from __future__ import annotations
 

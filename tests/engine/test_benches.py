@@ -1,6 +1,7 @@
-"""Benches: if a rule is the only writer of its slot, many of its first spikes share one second spike.
+"""On a *bench*, the spikes of one signal wait together for a spike of the other signal of a rule `a & b`.
 
-The shared second spike is called the *counterpart*. The rule runs on the same spikes as it would without benches.
+That other spike is called the *counterpart*. Only a rule without better rivals has benches. The rule runs on the same
+spikes as it would without benches.
 """
 
 from __future__ import annotations

@@ -1,4 +1,7 @@
-"""Conflict sets: the same rules run with a trace and without a trace."""
+"""A *conflict set* is the set of the clauses that one spike makes ready, although only one of them can run.
+
+With a trace, each clause gets an activation; without a trace, only the best one does. The same rules run in both cases.
+"""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Activations that need no consent leave their queue in the order of their newest spikes, not of their arrival."""
+"""Activations that need no consent wait in the queue `Free`. They leave it in the order of their newest spikes."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Causal groups, and the empty table that all groups without entries share."""
+"""Causal groups, and the empty table of slots that all new groups share."""
 
 from __future__ import annotations
 

@@ -1,4 +1,7 @@
-"""Halves: a first spike that waits for a second spike costs no activation, and this does not change the runs."""
+"""A *first spike* waits for the second spike of a rule `a & b`. A *half* keeps first spikes without activations.
+
+Halves save time and memory, and do not change the runs.
+"""
 
 from __future__ import annotations
 

@@ -1,4 +1,7 @@
-"""The horizon is correct, and derives a cycle of causes only once, even if many ways lead around the cycle."""
+"""The horizon of a group is the set of signals that its rules may still cause.
+
+The horizon is correct, and the engine follows each cycle of causes only once, even if many ways lead around the cycle.
+"""
 
 from __future__ import annotations
 

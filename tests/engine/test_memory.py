@@ -1,4 +1,4 @@
-"""An engine at rest keeps only what it must remember. While it has work, it borrows its other parts from its policy."""
+"""An engine at rest keeps only its state. While it has work, it borrows its other parts from its policy."""
 
 from __future__ import annotations
 
@@ -46,7 +46,7 @@ def finish(engine: Engine, now: float, act: Callable[[int], None] = lambda run: 
 
 
 def rest(engine: Engine, now: float) -> None:
-    """Let all spikes age."""
+    """Advance until all spikes are too old."""
     engine.advance(now)
     finish(engine, now)
 

@@ -1,4 +1,4 @@
-"""The table of outcomes has every possible end of a run (L18, L20, L21)."""
+"""The table of outcomes has every possible end of a run (laws L18, L20, L21)."""
 
 from __future__ import annotations
 

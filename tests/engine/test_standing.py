@@ -1,4 +1,4 @@
-"""Standing: which of two clauses goes first, now and later."""
+"""`Standing` says which of two clauses goes first, now and later."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""The set of stuck activations counts the activations of each rule."""
+"""`Stuck` is the set of the activations that wait only for each other. It counts the activations of each rule."""
 
 from __future__ import annotations
 

@@ -36,7 +36,7 @@ def test_only_a_short_example_can_begin_a_sentence() -> None:
         assert not acts([text]), text
 
 
-def test_only_is_true_if_nothing_but_courtesies_and_a_few_words_surround_an_act() -> None:
+def test_the_function_only_returns_true_if_just_courtesies_and_a_few_words_surround_an_act() -> None:
     for act, example in (("greeting", "Hello!"), ("farewell", "Bye!")):
         assert only(act, [example]) and only(act, ["Thank you.", example])
         assert not only(act, []) and not only(act, ["Thank you."])

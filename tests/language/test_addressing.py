@@ -20,6 +20,6 @@ def test_a_sentence_without_the_name_stays_as_it_is() -> None:
         assert addressed(sentence, ["Robin"]) == sentence
 
 
-def test_a_second_replacement_changes_nothing() -> None:
+def test_replacing_the_name_a_second_time_changes_nothing() -> None:
     once = [addressed(sentence, ["Robin"]) for sentence, _ in labelled("addressed_rows")]
     assert [addressed(sentence, ["Robin"]) for sentence in once] == once

@@ -1,4 +1,4 @@
-"""Packed vectors have the same products as the unpacked vectors."""
+"""Packed vectors have the same dot products as unpacked vectors."""
 
 from __future__ import annotations
 
@@ -13,7 +13,7 @@ def packed() -> np.ndarray:
     return np.random.default_rng(1).integers(-63, 64, (2 * BLOCK + 7, 48)).astype(np.int8)
 
 
-def test_packed_rows_count_as_vectors_of_length_1_in_products(packed: np.ndarray) -> None:
+def test_the_products_of_packed_rows_are_those_of_vectors_of_length_1(packed: np.ndarray) -> None:
     vectors = np.random.default_rng(2).normal(size=(3, 48)).astype(np.float32)
     long = packed.astype(np.float32)
     expected = vectors @ (long / np.linalg.norm(long, axis=1, keepdims=True)).T

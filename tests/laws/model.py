@@ -245,7 +245,10 @@ class Model:
         return self.leads(now, theirs, mine), self.leads(soon, theirs, mine)
 
     def leads(self, pairs: list[tuple[float, float]], theirs: Any, mine: Any) -> bool:
-        """Compare the first half of the pairs. If these are all 0, compare the second half."""
+        """Return whether `theirs` has the greater number in the first pair that differs; if none differs, go by order.
+
+        The second half of `pairs` counts only if the first half consists of zeros.
+        """
         for place, (one, other) in enumerate(pairs):
             if place == len(pairs) // 2 and any(pair != (0.0, 0.0) for pair in pairs[:place]):
                 break

@@ -24,7 +24,7 @@ def test_a_signal_that_arrives_while_the_rule_runs_starts_another_run(play: Any)
         assert moments(sim, out) == [(10.0, "slow"), (11.0, "slow"), (12.0, "slow")]
 
 
-def test_while_one_activation_lacks_a_spike_the_next_signal_starts_another(play: Any) -> None:
+def test_while_one_activation_lacks_a_spike_a_second_spike_begins_another_activation(play: Any) -> None:
     m = rs.Module("m")
     a, b, heard = m.signal("a", payload=int), m.signal("b", payload=int), list[Any]()
 

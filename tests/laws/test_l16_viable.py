@@ -1,4 +1,4 @@
-"""L16: a rival is viable while its missing spikes may still come. No activation waits for a rival longer than that."""
+"""L16: a rival is viable while its missing spikes may still come. An activation waits only for viable rivals."""
 
 import sys
 from typing import Any
@@ -36,8 +36,8 @@ def test_a_spike_still_too_young_keeps_a_rival_viable(play: Any) -> None:
         sim.emit(j)
         sim.emit(i)
         sim.advance(10.0)
-        assert moments(sim, out) == [(3.0, "specific")]  # three times the patience: no rival came under pressure
-        assert pressed(sim) == []
+        assert moments(sim, out) == [(3.0, "specific")]
+        assert pressed(sim) == []  # without pressure, `general` waits for longer than the patience (1 s)
 
 
 def test_a_rule_waits_for_a_rival_whose_spike_in_another_group_is_still_too_young(play: Any) -> None:
@@ -93,7 +93,7 @@ def test_a_rule_waits_for_the_effects_of_a_running_rule_however_long_it_runs(pla
 
 
 @pytest.mark.parametrize("after", [0.0, 0.7, 60.0])
-def test_a_waiting_rule_is_reconsidered_when_another_ends_without_its_signal(play: Any, after: float) -> None:
+def test_a_waiting_rule_runs_as_soon_as_a_classifier_ends_without_raising_its_signal(play: Any, after: float) -> None:
     m, i, out = classified(after, only_if=is_never_true)
     with play(m) as sim:
         sim.emit(i)
@@ -103,7 +103,7 @@ def test_a_waiting_rule_is_reconsidered_when_another_ends_without_its_signal(pla
 
 
 def chain(stops_at: int) -> tuple[rs.Module, rs.Signal[Any], rs.Slot[str]]:
-    """Declare a chain of three rules of 10 s each; one of them may end without its signal."""
+    """Declare a chain of three rules, each of which runs for 10 s. Rule number `stops_at` does not raise its signal."""
     m = rs.Module("m")
     signals = [m.signal(f"s{number}") for number in range(4)]
     for number in range(3):

@@ -1,4 +1,4 @@
-"""The static graph of causes (L7): which rules can cause a signal, directly or through other rules."""
+"""The static graph of causes (law L7): which rules can cause a signal, directly or through other rules."""
 
 import ravestate as rs
 from ravestate.policy.causes import Causes
@@ -56,14 +56,14 @@ def test_ancestors_stop_at_detached_rules_and_detached_constraints() -> None:
     assert causes.ancestors(out) is causes.ancestors(out)  # the set is computed only once
 
 
-def test_wide_ancestors_include_detached_effects() -> None:
+def test_the_wide_set_of_ancestors_includes_causes_through_detached_effects() -> None:
     policy, causes = chain()
     y, z = signals(policy, "y", "z")
     assert names(policy, causes.wide_ancestors(y)) == ["first", "second"]
     assert names(policy, causes.wide_ancestors(z)) == ["first", "aside"]
 
 
-def test_wide_ancestors_stop_at_inputs() -> None:
+def test_the_wide_set_of_ancestors_stops_at_inputs() -> None:
     m = rs.Module("m")
     entry, x, y = m.signal("entry"), m.signal("x", input=True), m.signal("y")
     rule(m, "first", entry, emits=x)
@@ -89,7 +89,7 @@ def test_downstream_clauses_are_those_that_a_rule_can_help_to_write_in_order_of_
     assert downstream(policy.rule_plan("m:plain")) == ()
 
 
-def test_the_signals_that_can_follow_from_given_signals_are_grounded() -> None:
+def test_a_signal_is_grounded_if_it_can_follow_from_the_given_signals() -> None:
     policy, causes = chain()
     entry, x, y, z, out = signals(policy, "entry", "x", "y", "z", "out:changed")
     assert causes.grounded([entry]) >= {entry, x, y, z, out}

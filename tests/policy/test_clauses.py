@@ -1,4 +1,4 @@
-"""The disjunctive normal form (L5) keeps declaration order, has no duplicates, and has a limit."""
+"""The disjunctive normal form (law L5) keeps declaration order, has no duplicates, and has a limit."""
 
 import pytest
 

@@ -1,4 +1,4 @@
-"""Compiling (L6): declaration order, numbers from settings, and all faults together, each with what to write."""
+"""Compiling (law L6): declaration order, numbers from settings, and all faults together, each with what to write."""
 
 import re
 import types

@@ -1,4 +1,4 @@
-"""Conflicts (L10): which rules exclude each other, for which causes, which rule wins, and by how much."""
+"""Conflicts (law L10): which rules exclude each other, for which causes, which rule wins, and by how much."""
 
 import math
 

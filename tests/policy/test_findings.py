@@ -105,7 +105,7 @@ def test_a_rule_that_can_win_is_not_reported(scene: Scene, first: dict[str, Any]
     assert ("never-wins", "m:second") not in scene.findings()
 
 
-def test_a_rule_with_one_clause_that_can_win_is_not_reported(scene: Scene) -> None:
+def test_a_rule_with_two_clauses_is_not_reported_if_one_of_them_can_win(scene: Scene) -> None:
     scene.rule("first", scene.heard, writes=scene.out, weight=2)
     scene.rule("second", scene.heard | scene.module.signal("other"), writes=scene.out)
     assert ("never-wins", "m:second") not in scene.findings()
@@ -222,7 +222,7 @@ def test_the_message_names_the_best_of_several_winners(scene: Scene) -> None:
 
 
 def test_signals_that_no_rule_raises_are_reported(scene: Scene) -> None:
-    """A signal from outside must have input=True. A slot needs no mark, because code outside may write any slot."""
+    """A signal from outside needs input=True. The signals of a slot are not reported, because any code may write it."""
     question, stop = scene.module.signal("question"), scene.module.signal("stop")
     scene.rule("answer", question | scene.out.changed, until=stop)
     found = scene.findings()

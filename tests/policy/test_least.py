@@ -74,7 +74,7 @@ def test_the_least_pathway_is_found_in_a_clique_of_any_size(count: int) -> None:
 def test_the_least_pathway_is_found_in_a_chain_of_any_length() -> None:
     m = rs.Module("m")
     chain = signals(m, "s", 2000)
-    for number in reversed(range(1999)):  # declares the effects before the causes
+    for number in reversed(range(1999)):  # so that effects are declared before their causes
         m.rule(when=chain[number], emits=chain[number + 1], name=f"r{number}")(nothing)
     policy = rs.compile(m)
     assert policy.utility("m:r0") == 0.0

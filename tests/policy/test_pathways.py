@@ -1,4 +1,4 @@
-"""Utilities: the paper's worked example to six decimals, and random policies against a simple version of L8 and L9."""
+"""Utilities: the paper's worked example to six decimals, and random policies against a simple form of the laws."""
 
 from __future__ import annotations
 

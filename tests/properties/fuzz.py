@@ -1,7 +1,7 @@
 """Compare the engine with the interpreter of the laws (``laws/model.py``) on random worlds, with and without a tracer.
 
-``python -m properties.fuzz [COUNT] [FIRST] [MOST]`` plays COUNT seeds, from FIRST or from a random number on. It prints
-the smallest world for each of the first MOST differences. The seeds give three kinds of worlds in turn:
+``python -m properties.fuzz [COUNT] [FIRST] [LIMIT]`` plays COUNT seeds, from FIRST or from a random number on. It prints
+the smallest world for each of the first LIMIT differences. The seeds give three kinds of worlds in turn:
 ``random_worlds.py``, ``pair_worlds.py`` and ``crowd_worlds.py``. Many of them are varied (``variations.py``).
 """
 
@@ -29,10 +29,10 @@ from ravestate.policy.policy import Policy
 from ravestate.runtime.journal import Entry, replay
 
 MOMENTS = 300
-"""The number of moments of a play that are compared."""
+"""A play stops after this number of moments, even if it is not over."""
 
 STEPS = 3_000
-"""The number of derivation steps after which the interpreter, which has no cache, gives up a play."""
+"""The interpreter stops a play after this number of derivation steps, because it has no cache and is slow."""
 
 
 ENOUGH = "too long to go on"
@@ -99,7 +99,7 @@ def story(world: World, machine: Any, names: Names, policy: Policy) -> list[str]
 
 
 def played(play: Play) -> list[str]:
-    """Play to the end. If the play ends early, return the reason as the only line."""
+    """Play to the end, but at most `MOMENTS` moments. If the play breaks off, return the reason as the only line."""
     try:
         for _ in range(MOMENTS):
             if not play.step():
@@ -207,8 +207,8 @@ def verdict(world: World) -> str:
         return repr(exception)
 
 
-def main(count: int, first: int, most: int = 1) -> int:
-    """Play `count` seeds. Shrink and print the first `most` differences. Return the number of differences."""
+def main(count: int, first: int, limit: int = 1) -> int:
+    """Play `count` seeds. Shrink and print the first `limit` differences. Return the number of all differences."""
     faults: list[int] = []
     start = time.process_time()
     for seed in range(first, first + count):
@@ -219,7 +219,7 @@ def main(count: int, first: int, most: int = 1) -> int:
         if fault:
             print(f"seed {seed}: {fault}", flush=True)
             faults.append(seed)
-            if len(faults) <= most:
+            if len(faults) <= limit:
                 least = shrink(world, verdict)
                 try:
                     words = difference(least) or observation(least)

@@ -1,4 +1,4 @@
-"""Once all rules have settled and all spikes are too old, no live object is left (L23)."""
+"""Once all rules have settled and all spikes are too old, no live object is left (law L23)."""
 
 from __future__ import annotations
 

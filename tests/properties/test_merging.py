@@ -1,4 +1,4 @@
-"""Random worlds with merging groups: no rule misses a spike, in whatever order the groups merge (L11, L12)."""
+"""Random worlds with merging groups: no rule misses a spike, in whatever order the groups merge (laws L11, L12)."""
 
 from __future__ import annotations
 

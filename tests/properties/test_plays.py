@@ -1,4 +1,4 @@
-"""Random worlds: the laws hold for any policy and any inputs (L10, L15, L16, L18, L23)."""
+"""Random worlds: the laws hold for any policy and any inputs (laws L10, L15, L16, L18, L23)."""
 
 from __future__ import annotations
 

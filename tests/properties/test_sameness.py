@@ -1,4 +1,4 @@
-"""Random worlds: observers, repetitions and unnecessary calls change nothing (L24, L25).
+"""Random worlds: observers, repetitions and unnecessary calls change nothing (laws L24, L25).
 
 `test_same_as_the_laws.py` has the tests about tracers and journals.
 """

@@ -93,7 +93,7 @@ def stored(text: str) -> frozenset[str]:
     told += [
         f"{'user' if one.subject.lower() == 'i' else one.subject} / {one.verb} / {one.object}" for one in meaning.free
     ]
-    if known := _KNOWN.match(text):  # denying a topic without a value removes its known value
+    if known := _KNOWN.match(text):  # a denial without a value removes the known value of its topic
         told = [f"{fact}={known[2]}" if fact == f"not {known[1]}" else fact for fact in told]
     return _facts(";".join(told))
 
@@ -199,7 +199,7 @@ def measured_feelings() -> list[Result]:
 
 
 def measured_smalltalk() -> list[Result]:
-    """Measure how often the listener's answer refers to the user's topic, by its word or by a pronoun."""
+    """Measure how often the listener's answer names the user's topic or contains a pronoun."""
     cases = [row for row in rows("smalltalk") if row[2] != NONE]
     modules.prepare(text for text, _, _ in cases)
     taken = 0

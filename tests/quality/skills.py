@@ -138,7 +138,7 @@ def wildtalk_facts(sentence: str) -> str:
 
 
 def hibye_words(sentence: str) -> str:
-    """Return ``greeting`` or ``farewell`` if a sentence is nothing else; otherwise ``-``."""
+    """Return ``greeting`` or ``farewell`` if a sentence is only a greeting or a farewell; otherwise ``-``."""
     bundled_matcher("acts").load()
     said = heard(sentence)
     return next((act for act in ("greeting", "farewell") if only(act, said)), "-")
@@ -155,7 +155,7 @@ SETS: dict[str, Callable[[str], str]] = {
 def result(name: str) -> measure.Result:
     """Measure the set `name`."""
     cases = measure.labelled(name)
-    if name not in ("wildtalk_facts", "hibye_words"):  # these two need no tree
+    if name not in ("wildtalk_facts", "hibye_words"):  # these two sets need no parse tree
         prepare(text for text, _ in cases)
     return measure.measure_labels(name, SETS[name], cases)
 

@@ -67,7 +67,7 @@ def addressed_rows(sentence: str) -> str:
 
 
 def closing_rows(sentence: str) -> str:
-    """Return the question that ends an utterance, after the kind of the words before it."""
+    """Return ``kind: question``: the kind of the first words of an utterance, and the question at its end."""
     found = analysed(sentence).closing
     if found is None:
         return measure.NONE
@@ -75,7 +75,7 @@ def closing_rows(sentence: str) -> str:
 
 
 def introductions_rows(sentence: str) -> str:
-    """Return the words in the place of the user's name, and what else the user says, if the name is sure."""
+    """Return the name that the user gives. If the name is sure, also return the rest of the utterance."""
     seen = analysed(sentence)
     if (found := seen.introduction) is not None:
         return f"{found.name} / {found.rest}"
@@ -121,7 +121,7 @@ def turned_rows(sentence: str) -> str:
 
 
 def repairs_rows(sentence: str) -> str:
-    """Return how a user objects to the agent's last answer. The situation is their utterance before it, and the answer."""
+    """Return how a user objects to the agent's last answer. The situation is the user's utterance and this answer."""
     situation, text = _parts(sentence)
     before, said = situation.split(" | ")
     found = repair_in(analysed(text), State(said=(said,), before=before))

@@ -42,7 +42,7 @@ def test_at_most_three_sentences_of_the_set_are_also_examples() -> None:
     assert len(shared) <= 3  # users ask "what do you know about me?" in many conversations
 
 
-def test_most_situations_in_unseen_conversations_are_those_of_the_right_move() -> None:
+def test_in_unseen_conversations_most_situations_that_the_listener_finds_belong_to_the_right_move() -> None:
     listener()
     bundled_moves().load()
     prepare(text for text, _ in ROWS)

@@ -17,7 +17,10 @@ HERE = re.escape(__file__)
 
 @dataclass
 class Machine:
-    """A simulated machine: its clock, the CPU time of the loop's thread and of others, and the thread's context switches."""
+    """A simulated machine: its clock, and the CPU seconds of the loop's thread (`computed`) and of other threads.
+
+    The loop's thread gives the processor up `chosen` times by itself, and loses it `forced` times.
+    """
 
     time: float = 0.0
     computed: float = 0.0

@@ -1,4 +1,4 @@
-"""Eager tasks cost little for a coroutine that does not wait, and act like other tasks for one that waits."""
+"""An eager task runs a coroutine that does not wait at little cost. If the coroutine waits, it acts like any task."""
 
 import asyncio
 import contextvars
@@ -439,7 +439,7 @@ async def test_a_coroutine_that_refuses_to_end_can_be_abandoned() -> None:
 
 
 @on_loop
-async def test_close_ends_a_spare_task_and_no_task_with_a_coroutine() -> None:
+async def test_the_method_close_ends_a_spare_task_but_no_task_that_has_a_coroutine() -> None:
     await closed(make())
     eager = make()
     future: asyncio.Future[int] = asyncio.get_running_loop().create_future()

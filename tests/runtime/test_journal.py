@@ -1,4 +1,4 @@
-"""A new engine that gets the journal of a real run has the same effects (L24)."""
+"""A new engine that gets the journal of a real run has the same effects (law L24)."""
 
 import asyncio
 from typing import Any

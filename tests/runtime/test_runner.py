@@ -380,9 +380,8 @@ def test_the_last_writes_of_a_cancelled_rule_come_before_those_of_its_successor(
     async def smile(ctx: rs.RuleContext) -> None:
         ctx[face] = "happy"
         try:
-            await asyncio.wait_for(
-                ctx.sleep(3.0), 60.0
-            )  # with `wait_for`, a cancellation takes several turns of the loop
+            # With `wait_for`, a cancellation takes several turns of the loop.
+            await asyncio.wait_for(ctx.sleep(3.0), 60.0)
         finally:
             ctx[face] = "calm"
 

@@ -1,4 +1,4 @@
-"""All contexts of an event loop share one spare task. Only one rule uses it at a time."""
+"""A spare task runs one rule after another. All contexts of an event loop share one spare task."""
 
 import asyncio
 import contextvars

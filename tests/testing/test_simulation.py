@@ -2,7 +2,7 @@
 
 import asyncio
 import gc
-from asyncio import sleep  # sleeps in virtual time, so it takes no real time
+from asyncio import sleep  # in these tests, `sleep` takes only virtual time
 from typing import Any
 
 import pytest

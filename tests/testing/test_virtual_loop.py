@@ -2,7 +2,7 @@
 
 import asyncio
 import threading
-from asyncio import sleep  # sleeps in virtual time, so it takes no real time
+from asyncio import sleep  # in these tests, `sleep` takes only virtual time
 from collections.abc import Iterator
 
 import pytest
@@ -47,7 +47,7 @@ def test_the_loop_skips_cancelled_timers(loop: VirtualLoop) -> None:
     assert loop.time() == 3.0
 
 
-def test_run_to_with_a_past_time_changes_nothing(loop: VirtualLoop) -> None:
+def test_the_method_run_to_changes_nothing_if_its_time_is_past(loop: VirtualLoop) -> None:
     loop.run_to(3)
     loop.run_to(1)
     assert loop.time() == 3.0

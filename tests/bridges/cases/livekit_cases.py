@@ -134,9 +134,8 @@ async def test_the_agent_knows_which_of_its_words_the_user_heard() -> None:
         assert await answers(session, "count") == ["One, two, three."]
         assert (await items.next()).text_content == "One, two, three."
         loudspeaker.most = len("One, two,")
-        handle = session.generate_reply(
-            user_input="count again"
-        )  # the rule ends immediately, but speaking its words takes longer
+        # The rule ends immediately, but speaking its words takes longer.
+        handle = session.generate_reply(user_input="count again")
         await loudspeaker.stopped.wait()
         await session.interrupt()
         await handle

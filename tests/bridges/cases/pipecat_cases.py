@@ -214,7 +214,7 @@ async def converse(
 
         async def on_push_frame(self, data: FramePushed) -> None:
             over = data.source is processor and isinstance(data.frame, LLMContextAssistantTurnFrame)
-            # A frame upstream: the processor now knows that the agent's turn is over.
+            # When this frame goes upstream, the processor knows that the agent's turn is over.
             if over and data.direction is FrameDirection.UPSTREAM:
                 for frame in rest.pop(0):
                     await send(pair.user(), frame)

@@ -177,12 +177,12 @@ def test_a_user_who_types_is_not_silent() -> None:
         assert sim.read(times) == pytest.approx((28.0,))
 
 
-def test_a_sent_line_is_followed_by_an_ordinary_silence() -> None:
+def test_after_a_sent_line_the_user_no_longer_counts_as_typing() -> None:
     with simulate(watch, settings={"idle": {**SOON, "writing_time": 8.0}}) as sim:
         sim.advance(4.0)
         sim.emit(rawio.typing)
         sim.advance(1.0)
-        sim.say("hello")  # answered 2 s later
+        sim.say("hello")  # the agent answers 2 s later
         sim.advance(7.1)
         assert sim.read(times) == pytest.approx((12.0,))
         sim.advance(1.5)

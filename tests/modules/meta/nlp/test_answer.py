@@ -1,4 +1,4 @@
-"""Properties of the meaning of any answer. `tests/quality` measures how often the meaning is right."""
+"""Properties that hold for the meaning of any answer. `tests/quality` measures how often the meaning is right."""
 
 import pytest
 from hypothesis import given

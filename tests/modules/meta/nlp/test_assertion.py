@@ -11,7 +11,7 @@ def said(reader: Pipeline, text: str) -> list[Statement]:
     return list(statements_of(*reader.read(text)))
 
 
-def test_a_statement_with_my_mother_says_after_it_is_hearsay(reader: Pipeline) -> None:
+def test_a_statement_before_the_words_my_mother_says_is_hearsay(reader: Pipeline) -> None:
     first, *_ = said(reader, "I am lazy, my mother says.")
     assert first.hearsay and not first.holds
 

@@ -28,7 +28,7 @@ def test_an_utterance_without_a_complete_question_after_other_words_has_no_closi
 
 
 @pytest.mark.parametrize("back", ["Do you?", "And you?", "What about you?"])
-def test_and_you_asks_what_the_user_has_just_said(back: str) -> None:
+def test_a_question_such_as_and_you_repeats_the_users_statement_as_a_question(back: str) -> None:
     found = closing(f"I love jazz. {back}")
     assert found is not None
     assert found.returned

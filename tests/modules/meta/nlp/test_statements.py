@@ -1,4 +1,4 @@
-"""Properties of any triples. `tests/quality` measures how often they are right."""
+"""Properties that hold for the triples of any text. `tests/quality` measures how often triples are right."""
 
 import pytest
 

@@ -1,6 +1,7 @@
 """Open damaged copies of a memory, one after the other: ``python damaged.py MEMORY SEED CASES``.
 
-It prints a line for each copy: ``read``, or the exception. If a copy ends the process, its line is missing.
+The program prints a line for each copy: ``read``, ``broken``, or the exception. If a copy ends the process, its line is
+missing.
 """
 
 import random

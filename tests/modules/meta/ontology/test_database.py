@@ -69,6 +69,7 @@ def test_a_damaged_file_is_read_or_called_broken(tmp_path: Path, open_here: Open
 
 
 def test_a_trial_opening_does_not_change_an_intact_file(tmp_path: Path, open_here: Open) -> None:
+    """A separate process opens the file on trial, because a damaged file can crash the process that opens it."""
     path = small_memory(tmp_path, open_here)
     content = path.read_bytes()
     assert survives(path) and survives(path, whole_log=False)

@@ -178,6 +178,7 @@ def test_forget_warns_about_logs_that_can_still_have_the_data(
 
 
 def test_closing_seals_a_memory_and_a_later_change_breaks_the_seal(tmp_path: Path, open_here: Open) -> None:
+    """The seal is a checksum in the file ``memory.lbug.sum``."""
     files = MemoryFiles(tmp_path / "memory.lbug")
     assert not files.is_sealed()
     open_here(path=files.path).close().result()

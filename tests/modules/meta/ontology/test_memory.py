@@ -60,7 +60,7 @@ def test_subtypes_are_found_with_their_type_oldest_first(memory: Memory) -> None
     assert memory.find("Thing", name="x").result() == [robot, person, thing, agent, city]
 
 
-def test_find_with_the_value_none_matches_nodes_without_this_property(memory: Memory) -> None:
+def test_a_search_for_the_value_none_finds_nodes_without_this_property(memory: Memory) -> None:
     ada = memory.create("Person", name="Ada", age=36).result()
     bob = memory.create("Person", name="Bob").result()
     nobody = memory.create("Person", age=None).result()
@@ -129,7 +129,7 @@ def test_undeclared_types_and_properties_are_refused(
     assert memory.export().result() == before
 
 
-def test_ensure_creates_a_node_once_and_then_finds_it(memory: Memory) -> None:
+def test_the_operation_ensure_creates_a_node_once_and_later_finds_it(memory: Memory) -> None:
     first = memory.ensure("City", name="Hannover").result()
     assert memory.ensure("City", name="Hannover").result() == first
     assert memory.ensure("Place", name="Hannover").result() == first
@@ -341,7 +341,7 @@ def test_a_person_is_forgotten_with_everything_about_them(memory: Memory) -> Non
     assert memory.forget(ada).result() == memory.only_about(ada).result() == []
 
 
-def test_forget_keeps_nodes_that_other_nodes_need_even_in_a_cycle(memory: Memory) -> None:
+def test_the_operation_forget_keeps_nodes_that_other_nodes_need_even_in_a_cycle(memory: Memory) -> None:
     ada = memory.create("Person", name="Ada").result()
     here, there = memory.create("City", name="here").result(), memory.create("City", name="there").result()
     for source, relation, target in (

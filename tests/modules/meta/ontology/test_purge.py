@@ -85,7 +85,7 @@ def test_without_a_pause_the_purge_is_still_done_in_time(
     assert not holds(tmp_path / "memory.lbug")
 
 
-def test_purge_returns_when_no_byte_of_the_old_value_is_left(
+def test_the_operation_purge_returns_when_no_byte_of_the_old_value_is_left(
     tmp_path: Path, open_here: Open, rewrites: list[str], monkeypatch: pytest.MonkeyPatch
 ) -> None:
     monkeypatch.setattr(worker, "PAUSE", NEVER)
@@ -150,7 +150,7 @@ def test_a_failed_purge_is_repeated_after_the_next_start(
 
 
 @pytest.mark.parametrize("ending", ["purge", "close"])
-def test_purge_and_close_repeat_a_failed_purge_but_pauses_do_not(
+def test_the_operations_purge_and_close_repeat_a_failed_purge_but_pauses_do_not(
     tmp_path: Path,
     open_here: Open,
     rests: threading.Semaphore,

@@ -121,7 +121,7 @@ def test_without_the_package_the_agent_runs_without_memory(
     with simulate(host, settings=at(tmp_path / "m.lbug")) as sim:
         assert sim.read(ontology.memory) is None
         sim.emit(ask, "Ada")
-        assert sim.read(answer) == "none"  # the next best rule
+        assert sim.read(answer) == "none"  # the next best rule has answered
         assert {rule for rule, _ in sim.failures} <= {"host:begin"}
     [warned] = [record for record in caplog.records if record.name == "ravestate.ontology.open_up"]
     assert warned.levelname == "WARNING"

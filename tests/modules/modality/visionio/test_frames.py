@@ -10,7 +10,7 @@ from ravestate.errors import PlatformError
 from ravestate.modules.modality.visionio.frames import Frame, Frames
 
 
-def test_next_returns_only_the_newest_picture() -> None:
+def test_the_method_next_returns_only_the_newest_picture() -> None:
     async def watch() -> None:
         frames = Frames()
         for number in range(5):
@@ -45,7 +45,7 @@ def test_put_message_accepts_pictures_from_ros() -> None:
         frames.put_message(SimpleNamespace(data=b"", height=1, width=1, step=4, encoding="32FC1"))
 
 
-def test_next_returns_none_once_the_camera_is_closed() -> None:
+def test_the_method_next_returns_none_once_the_camera_is_closed() -> None:
     async def watch() -> None:
         frames = Frames()
         asyncio.get_running_loop().call_soon(frames.close)
@@ -56,7 +56,7 @@ def test_next_returns_none_once_the_camera_is_closed() -> None:
     asyncio.run(watch())
 
 
-def test_taken_waits_until_next_has_returned_the_picture_or_the_camera_is_closed() -> None:
+def test_the_method_taken_waits_until_a_call_of_next_returns_the_picture_or_the_camera_closes() -> None:
     async def watch() -> None:
         frames = Frames()
         await frames.taken()  # returns immediately, because there is no picture

@@ -42,7 +42,7 @@ def test_a_vector_can_be_packed_as_text_and_damaged_text_unpacks_to_none() -> No
     assert people.unpacked("") is None and people.unpacked(text[:-4]) is None and people.unpacked("ä" * 684) is None
 
 
-def test_nearest_returns_the_nearest_person_within_the_threshold(graph: Memory) -> None:
+def test_the_function_nearest_returns_the_nearest_person_within_the_threshold(graph: Memory) -> None:
     assert do(graph, lambda g: people.nearest(g, vector("obama"), 0.55)) is None
     keep(graph, "Barack", "obama")
     keep(graph, "Joe", "biden")
@@ -68,14 +68,14 @@ def test_no_person_is_recognised_if_a_second_person_is_about_as_near_but_beyond_
     assert do(graph, lambda g: people.nearest(g, [0.0] * 128, 0.45)) is None
 
 
-def test_keep_skips_views_that_are_known_and_drops_the_oldest_views(graph: Memory) -> None:
+def test_the_function_keep_skips_known_views_and_drops_the_oldest_views(graph: Memory) -> None:
     assert keep(graph, "Barack", "obama2", "obama2_32bit")[1] == 1
     person, filed = keep(graph, "Barack", *OBAMA, most=3)
     assert filed >= 3
     assert len(do(graph, lambda g: people.faces_of(g, person))) == 3
 
 
-def test_keep_merges_only_people_with_equal_names_and_similar_faces(graph: Memory) -> None:
+def test_the_function_keep_merges_only_people_with_equal_names_and_similar_faces(graph: Memory) -> None:
     first, _ = keep(graph, "Barack", "obama")
     keep(graph, "Joe", "biden")
 

@@ -216,7 +216,7 @@ def test_the_user_of_another_platform_gets_the_name_of_the_person_in_front_of_th
         assert sim.read(persqa.who) is None
 
 
-def test_a_name_told_before_the_camera_is_on_applies_to_the_users_face(memory: Path) -> None:
+def test_a_name_that_the_user_gives_before_the_camera_is_on_applies_to_their_face(memory: Path) -> None:
     with agent(memory) as sim:
         stage = Stage()
         sim.put(interloc.users, {"page": None})

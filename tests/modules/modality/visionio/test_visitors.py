@@ -1,4 +1,4 @@
-"""Decisions about whose face a track shows, and which visitor it belongs to. The tests use short vectors."""
+"""Decisions: whose face does a track show, and to which visitor does the track belong? The tests use short vectors."""
 
 from ravestate.modules.meta.ontology import Node
 from ravestate.modules.modality.visionio.face import FaceVec
@@ -50,7 +50,7 @@ def test_a_visitor_keeps_the_best_of_similar_vectors() -> None:
     one = Visitor("a", ADA)
     for x, quality in ((0.0, 0.5), (0.01, 0.9), (0.3, 0.4), (0.5, 0.1), (0.9, 0.9)):
         one = one.met(face(x, quality=quality), least=0.3, threshold=0.5)
-    # Not 0.5, which was hardly visible, and not 0.9, which is another face.
+    # The visitor keeps neither 0.5, which was hardly visible, nor 0.9, which is another face.
     assert one.vectors == ((0.9, (0.01, 0.0)), (0.4, (0.3, 0.0)))
     assert one.good(0.5) == ((0.9, (0.01, 0.0)),)
     assert best([(0.1 * n, (float(n),)) for n in range(20)], 3) == (

@@ -13,5 +13,5 @@ def test_a_wish_must_be_about_the_face() -> None:
     assert not any(map(wish_of, ("forget my name", "remember the milk", "My face hurts.", "")))
 
 
-def test_to_forget_outweighs_to_remember() -> None:
+def test_a_wish_to_forget_a_face_outweighs_a_wish_to_remember_it() -> None:
     assert wish_of("remember my face. No, forget my face.") == "forget"

@@ -33,7 +33,7 @@ def test_in_a_group_the_agent_gets_only_messages_that_address_it(
     [("Robin, hello", True), ("hello robin!", True), ("the robins sing", False), ("", False),
      ("ask @robin_bot", True), ("ask @robin_bottle", False)],
 )  # fmt: skip
-def test_mentions_finds_a_name_only_as_a_whole_word(text: str, found: bool) -> None:
+def test_the_function_mentions_finds_a_name_only_as_a_whole_word(text: str, found: bool) -> None:
     assert mentions(text, ("Robin", "@robin_bot", "")) is found
 
 

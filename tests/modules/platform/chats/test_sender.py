@@ -12,7 +12,7 @@ from ravestate.modules.platform.chats.store import Answer
 
 
 @in_virtual_time
-async def test_spare_returns_true_only_if_a_message_can_be_sent_now() -> None:
+async def test_the_method_spare_returns_true_only_if_a_message_can_be_sent_now() -> None:
     pace = Pace(20.0)
     await past(10.0)
     while pace.spare():  # use up the burst

@@ -171,7 +171,7 @@ def test_a_forgotten_chat_leaves_no_text_in_the_file(tmp_path: Path) -> None:
     assert b"secret" not in whole
 
 
-def test_move_changes_the_chat_of_all_messages_of_a_chat(tmp_path: Path) -> None:
+def test_the_method_move_gives_all_messages_of_a_chat_to_another_chat(tmp_path: Path) -> None:
     store = opened(tmp_path)
     store.take(letter("one"))
     store.commit([answer("yes")])

@@ -89,7 +89,7 @@ def test_missing_or_closed_input_gives_no_lines(tmp_path: Path) -> None:
     assert read(file) == []
 
 
-def test_read_returns_a_line_as_soon_as_it_arrives(pipe: Callable[[], Pipe]) -> None:
+def test_the_method_read_returns_a_line_as_soon_as_it_arrives(pipe: Callable[[], Pipe]) -> None:
     reader, writer = pipe()
 
     async def main() -> None:
@@ -122,7 +122,7 @@ def test_the_input_can_end_after_the_event_loop_has_ended(pipe: Callable[[], Pip
     writer.close()
 
 
-def test_show_immediately_writes_lines(pipe: Callable[[], Pipe]) -> None:
+def test_the_method_show_writes_lines_immediately(pipe: Callable[[], Pipe]) -> None:
     reader, writer = pipe()
     pipes = Pipes(None, writer)
     pipes.show("hello\nyou")

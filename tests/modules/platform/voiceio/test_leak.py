@@ -17,7 +17,7 @@ def sound(*parts: tuple[float, str | bytes]) -> np.ndarray:
 
 
 def hidden(near: np.ndarray, far: np.ndarray) -> tuple[np.ndarray, Leak]:
-    """Return for each chunk of the microphone's sound whether `Leak` hides it, and the `Leak` itself."""
+    """Return whether a `Leak` hides each chunk of the microphone's sound `near`; also return the `Leak`."""
     leak, found, chunk = Leak(), list[bool](), 0
     for at in range(0, len(near) - FRAME, FRAME):
         leak.play(near[at : at + FRAME].astype("<i2"), far[at : at + FRAME].astype("<i2"))

@@ -32,7 +32,7 @@ def test_silence_is_not_an_echo() -> None:
     assert likeness(np.zeros(NEAR, np.float32), sound((0.1, FAR_TEXT))[:FAR])[0] < 25
 
 
-def test_strength_measures_an_echo_even_while_the_user_speaks() -> None:
+def test_the_function_strength_measures_an_echo_even_while_the_user_speaks() -> None:
     far, user = sound((0.1, FAR_TEXT))[:FAR], sound((0.8, spoken(NEAR_TEXT, "espeak:en-us")))[FAR - NEAR : FAR]
     for decibels in (-5.0, -10.0):
         echo = 10 ** (decibels / 20) * np.concatenate([np.zeros(480, np.float32), far])[FAR - NEAR : FAR]

@@ -1,4 +1,4 @@
-"""The mouth speaks growing text, knows which part the user has heard, and can hold its speech."""
+"""A `Mouth` speaks a text while the text grows, knows which part the user has heard, and can pause (`hold`)."""
 
 import asyncio
 
@@ -35,7 +35,7 @@ def mouth() -> Mouth:
     ("seconds", "heard"),
     [(0.1, ""), (0.2, ""), (0.31, "one"), (1.2, "one two"), (1.4, "one two three"), (2.4, TEXT), (9.0, TEXT)],
 )
-def test_heard_returns_the_words_that_have_sounded_so_far(seconds: float, heard: str) -> None:
+def test_the_method_heard_returns_the_words_that_have_sounded_so_far(seconds: float, heard: str) -> None:
     async def listen() -> None:
         one = mouth()
         one.begin()
@@ -67,7 +67,7 @@ def test_a_word_counts_as_heard_before_the_pause_after_it(seconds: float, heard:
     run(listen)
 
 
-def test_heard_joins_the_sentences_of_an_utterance() -> None:
+def test_the_method_heard_joins_the_sentences_of_an_utterance() -> None:
     async def listen() -> None:
         one = mouth()
         one.begin()
@@ -133,7 +133,7 @@ def test_nothing_of_a_new_utterance_counts_as_heard_before_it_sounds() -> None:
     run(listen)
 
 
-def test_reference_returns_the_sound_that_is_playing() -> None:
+def test_the_method_reference_returns_the_sound_that_is_playing() -> None:
     async def listen() -> None:
         one = mouth()
         one.begin()
@@ -148,7 +148,7 @@ def test_reference_returns_the_sound_that_is_playing() -> None:
     run(listen)
 
 
-def test_speech_yields_each_sentence_as_soon_as_it_is_complete() -> None:
+def test_the_class_speech_yields_each_sentence_as_soon_as_it_is_complete() -> None:
     async def listen() -> None:
         speech, found = Speech(), list[tuple[int, str]]()
 

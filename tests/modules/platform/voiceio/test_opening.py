@@ -98,7 +98,8 @@ def test_all_parts_are_closed_if_the_sound_cannot_be_written(monkeypatch: pytest
 
 
 def test_recognition_of_a_turn_is_cancelled_when_the_user_continues_the_turn(monkeypatch: pytest.MonkeyPatch) -> None:
-    """The user continues while the recogniser works on the first part. `judge` is then cancelled."""
+    """The user continues while the recogniser works on the first part. Then the conversation cancels its call of `judge`,
+    the method that runs the recogniser."""
     scripted, begun, asked = Scripted("Hello."), threading.Event(), list[threading.Event]()
 
     def recognise(_: bytes, *, partial: bool = False, unwanted: threading.Event) -> Recognised:

@@ -11,7 +11,7 @@ from ravestate.modules.platform.voiceio.pitch import change, is_another, pitch, 
 
 
 @pytest.mark.parametrize("hertz", [90.0, 140.0, 220.0, 330.0])
-def test_pitch_returns_the_frequency_of_a_tone(hertz: float) -> None:
+def test_the_function_pitch_returns_the_frequency_of_a_tone(hertz: float) -> None:
     time = np.arange(16000) / 16000
     tone = sum(np.sin(2 * np.pi * hertz * k * time) / k for k in range(1, 8)) * 4000
     assert pitch(tone.astype("<i2")) == pytest.approx(hertz, rel=0.03)
@@ -38,7 +38,7 @@ def test_two_parts_of_one_persons_speech_count_as_one_person() -> None:
     assert not is_another(pitches(pcm[: len(pcm) // 2]), pitches(pcm[len(pcm) // 2 :]))
 
 
-def test_change_finds_the_place_where_another_person_begins_to_speak() -> None:
+def test_the_function_change_finds_the_place_where_another_person_begins_to_speak() -> None:
     low = voice("I would like to go to the station.", "espeak:en-us")
     high = voice("No, that is much too far for us.", "espeak:en+f3")
     for first, second in ((low, high), (high, low)):

@@ -15,7 +15,7 @@ def test_queued_sounds_are_counted_one_after_another() -> None:
     assert out.played(5.5) == 2.5
 
 
-def test_stop_drops_the_remaining_sound_and_keeps_the_count() -> None:
+def test_the_method_stop_drops_the_remaining_sound_and_keeps_the_count() -> None:
     out = PlayOut()
     out.play(bytes(2 * SECOND), 0.0)
     out.stop(0.5)

@@ -52,7 +52,7 @@ def test_alternatives_for_the_last_word_change_how_much_silence_ends_a_turn(
     assert wanted_silence(text, 0.9, SETTINGS, last) == silence
 
 
-def test_no_wanted_silence_is_longer_than_the_setting() -> None:
+def test_the_agent_waits_for_no_silence_longer_than_the_setting() -> None:
     quick = Settings(longest_pause=0.5)
     assert max(wanted_silence(text, 0.1, quick) for text in ("and the", "Yes.", "I think that")) == 0.5
 

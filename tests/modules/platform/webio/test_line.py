@@ -12,7 +12,7 @@ from ravestate.modules.platform.webio.line import AHEAD, BLOCK, CHUNK, MOST_HEAR
 
 
 class Speaker:
-    """A stand-in for a browser window. It fetches sound, and the test says how much it has played."""
+    """A stand-in for a browser window. It fetches sound, and the test calls `played` to report how much has played."""
 
     def __init__(self, line: PageLine) -> None:
         self.line = line
@@ -75,7 +75,7 @@ async def test_after_the_microphone_goes_off_the_agent_hears_silence() -> None:
 
 
 @in_virtual_time
-async def test_played_is_the_reported_position_plus_a_short_estimate() -> None:
+async def test_the_attribute_played_is_the_reported_position_plus_a_short_estimate() -> None:
     line = PageLine()
     line.take(window := Speaker(line))
     line.play(tone(3.0))
@@ -124,7 +124,7 @@ async def test_a_line_is_drained_once_everything_has_been_played() -> None:
 
 
 @in_virtual_time
-async def test_stop_drops_the_remaining_sound_and_keeps_the_position() -> None:
+async def test_the_method_stop_drops_the_remaining_sound_and_keeps_the_position() -> None:
     line = PageLine()
     line.take(window := Speaker(line))
     line.play(tone(3.0))

@@ -98,7 +98,7 @@ async def test_a_text_that_is_sent_twice_is_heard_only_once() -> None:
 
 
 @in_virtual_time
-async def test_hear_returns_whether_the_conversation_accepts_the_text() -> None:
+async def test_the_method_hear_returns_whether_the_conversation_accepts_the_text() -> None:
     async with page() as app, Visit(app) as visit:
         await visit.hello()
         await visit.messages(1)

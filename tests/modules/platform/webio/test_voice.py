@@ -256,7 +256,7 @@ async def test_a_visitor_can_leave_while_the_agent_speaks() -> None:
 
 
 @in_virtual_time
-async def test_the_heard_words_mark_the_message_that_begins_with_them() -> None:
+async def test_the_message_that_begins_with_the_heard_words_is_marked() -> None:
     async with page() as app, Visit(app) as visit:
         await visit.hello()
         context = session_of(app).context
@@ -402,5 +402,5 @@ def test_only_the_page_of_an_agent_that_hears_may_use_the_microphone() -> None:
         with TestClient(webio.app(Agent(*modules, webio)), base_url="http://127.0.0.1:8420") as client:
             headers = client.get("/").headers
             assert allowed in headers["permissions-policy"]
-            assert "script-src 'self'" in headers["content-security-policy"]  # which also allows the audio worklet
+            assert "script-src 'self'" in headers["content-security-policy"]  # this also allows the audio worklet
             assert client.get("/assets/worklet.js").status_code == 200

@@ -57,7 +57,7 @@ def test_negation_follows_de_morgan() -> None:
     assert str(either) == "guide:lit.holds(not_bool) & guide:number.holds(not_bool)"
 
 
-def test_watching_detaches_every_signal_and_keeps_ages_and_predicates() -> None:
+def test_the_function_watching_detaches_every_signal_and_keeps_ages_and_predicates() -> None:
     condition = watching(asked & lit.true.min_age(2) & number.holds(bool) | lit.false)
     assert str(condition) == (
         "guide:asked.max_age(None).detached() & guide:lit:true.min_age(2.0).detached() & guide:number.holds(bool) | "

@@ -392,7 +392,7 @@ def test_an_emoji_does_not_delay_a_goal() -> None:
         assert [sim.said[0], *sim.said[2:]] == ["I see.", "A game?"]
 
 
-def test_goal_returns_an_object_with_the_name_of_its_rule() -> None:
+def test_the_function_goal_returns_an_object_with_the_name_of_its_rule() -> None:
     guide = agent()
     goal = agenda.goal(guide, "game", say="A game?", done="yes")
     assert isinstance(goal, Goal)

@@ -1,4 +1,4 @@
-"""Properties of any remark. The quality set ``agentqa_remarks`` measures how well remarks are understood."""
+"""Properties that hold for any remark. The quality set ``agentqa_remarks`` measures how well remarks are understood."""
 
 from __future__ import annotations
 

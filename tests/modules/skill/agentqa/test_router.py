@@ -1,4 +1,7 @@
-"""Properties of the routing of any question. The quality set ``agentqa_asks`` measures how often it is right."""
+"""The router finds the topic of a question about the agent.
+
+These properties hold for any question. The quality set ``agentqa_asks`` measures how often the router is right.
+"""
 
 from __future__ import annotations
 

@@ -213,9 +213,8 @@ def test_the_user_can_answer_a_question_and_ask_it_back(question: str, answer: s
     own = f"topics: {{{topic}: {{phrases: 'This is my {topic}. And yours?'}}}}"
     with start(tmp_path, chatter, encyclopaedia, own=own) as sim:
         sim.put(rawio.output, question)
-        assert (
-            say(sim, answer) == f"This is my {topic}."
-        )  # without "And yours?", because the user has already answered this question
+        # The user has already answered the question, so the agent leaves "And yours?" out.
+        assert say(sim, answer) == f"This is my {topic}."
 
 
 def test_the_words_and_you_without_an_earlier_question_are_left_to_other_modules(tmp_path: Path) -> None:

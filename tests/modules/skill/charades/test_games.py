@@ -367,7 +367,7 @@ def test_the_game_and_not_small_talk_answers_a_user_who_is_bored() -> None:
         run(sim, "> I'm bored\n= offer\n> yes\n= begin")
 
 
-def test_wait_cancels_the_countdown_and_typing_delays_the_reminder() -> None:
+def test_the_word_wait_cancels_the_countdown_and_typing_delays_the_reminder() -> None:
     with agent() as sim:
         run(
             sim,
@@ -441,7 +441,7 @@ def test_the_game_continues_after_the_user_interrupts_the_voice() -> None:
     "step", ["offered", "choosing", "counting", "watching", "guessed", "asked", "between", "riddle"]
 )
 @pytest.mark.parametrize("word", ["stop", "stop the game please", "I don't want to play any more"])
-def test_stop_ends_the_game_at_every_step(step: str, word: str) -> None:
+def test_the_word_stop_ends_the_game_at_every_step(step: str, word: str) -> None:
     way = {
         "offered": ["> let's play something"],
         "choosing": ["> let's play charades"],
@@ -474,7 +474,7 @@ def test_stop_ends_the_game_at_every_step(step: str, word: str) -> None:
         )
 
 
-def test_goodbye_ends_the_game_and_another_module_answers() -> None:
+def test_the_word_goodbye_ends_the_game_and_another_module_answers() -> None:
     with agent(hibye) as sim:
         sim.say("let's play charades")
         sim.say("goodbye")
@@ -532,7 +532,7 @@ def test_every_question_can_be_repeated() -> None:
         assert sim.said == []
 
 
-def test_stop_ends_the_game_even_if_another_module_answers_stop() -> None:
+def test_the_word_stop_ends_the_game_even_if_another_module_answers_it() -> None:
     """The first "stop" ends the game, and only the second makes the agent promise to be quiet."""
     loud = rs.Module("loud", requires=[rawio, idle])
 

@@ -258,7 +258,7 @@ def test_the_answer_to_the_first_words_does_not_answer_the_second(first: str) ->
         assert len([text for text in sim.said if text in SORRY]) == 1
 
 
-def test_no_apology_for_words_after_which_the_user_says_more() -> None:
+def test_words_after_which_the_user_says_more_get_no_apology() -> None:
     with simulate(fillers, both) as sim:
         sim.say("-10")
         sim.advance(3.0)
@@ -306,4 +306,4 @@ def test_an_old_answer_does_not_end_the_wait_for_the_next() -> None:
         sim.say("second?")
         sim.advance(70.0)
         after = sim.said[sim.said.index("first answer") + 1 :]
-        assert after  # a filler, the notice of a delay, or an apology
+        assert after  # the text of a filler, of a notice of delay, or of an apology

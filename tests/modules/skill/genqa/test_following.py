@@ -1,4 +1,4 @@
-"""Answers fit the qualifiers of a question, and compare things. The quality set ``thread_ship_rows`` has more of them."""
+"""An answer fits the qualifiers of its question, and can compare two things. `tests/quality` has more questions."""
 
 from collections.abc import Iterator
 

@@ -1,4 +1,4 @@
-"""Properties of any question. The quality set ``genqa_declined`` measures which questions the module looks up."""
+"""Properties that hold for any question. The quality set ``genqa_declined`` measures which questions are looked up."""
 
 import pytest
 

@@ -38,7 +38,7 @@ def test_quick_work_needs_no_bar() -> None:
     assert screen.getvalue() == ""
 
 
-def test_above_a_prompt_the_bar_is_one_line_of_text(monkeypatch: pytest.MonkeyPatch) -> None:
+def test_while_a_prompt_is_shown_the_bar_above_it_is_one_line_of_text(monkeypatch: pytest.MonkeyPatch) -> None:
     screen = Terminal()
     monkeypatch.setattr(sys, "stderr", screen)
     with ProgressBar("Loading", delay=0.0) as bar:
@@ -47,7 +47,7 @@ def test_above_a_prompt_the_bar_is_one_line_of_text(monkeypatch: pytest.MonkeyPa
     assert screen.getvalue() == "Loading…\n"
 
 
-def test_above_a_prompt_a_finished_bar_is_not_shown(monkeypatch: pytest.MonkeyPatch) -> None:
+def test_while_a_prompt_is_shown_a_finished_bar_is_not_shown(monkeypatch: pytest.MonkeyPatch) -> None:
     screen = Terminal()
     monkeypatch.setattr(sys, "stderr", screen)
     with ProgressBar("Loading", delay=0.0) as bar:

@@ -116,7 +116,7 @@ def test_before_the_examples_are_learnt_nothing_looks_at_them_on_the_event_loop(
     assert sim.fired[-1] == "wildtalk:comfort"
 
 
-def test_it_answers_once_although_two_clauses_wait_for_the_input(sim: Simulation) -> None:
+def test_small_talk_answers_once_although_two_of_its_clauses_wait_for_the_input(sim: Simulation) -> None:
     for text in ("hello", "hello", "I bought a hat"):
         sim.say(text)
         sim.advance(1.0)

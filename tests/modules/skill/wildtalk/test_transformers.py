@@ -122,7 +122,9 @@ def end_loaders() -> None:
             thread.join()
 
 
-def test_contexts_share_a_model_until_the_last_lets_go_of_it(tiny: Path, tmp_path: Path, loads: list[str]) -> None:
+def test_contexts_share_a_model_until_the_last_context_releases_it(
+    tiny: Path, tmp_path: Path, loads: list[str]
+) -> None:
     name = copy_of(tiny, tmp_path / "shared")
 
     async def story() -> None:
@@ -158,7 +160,7 @@ def test_an_answer_is_no_longer_than_the_models_context(tiny: Path) -> None:
     async def story() -> list[str]:
         return await answer(TransformersBackend(str(tiny)), max_tokens=100_000, temperature=2.0)
 
-    assert asyncio.run(story())  # it did not fail
+    assert asyncio.run(story())  # there is an answer
 
 
 def test_closing_an_answer_stops_the_model(tiny: Path) -> None:
