@@ -108,6 +108,8 @@ def _after_not(tree: Tree, but: Word) -> tuple[Word, Word, Word, Sequence[Word]]
     after = tree.words[span[-1].index + 1 :][:1]
     for wrong in _tops(tree, last):
         inner = [word for word in tree.subtree(wrong) if word.index <= last.index and word.low not in NEGATIONS]
+        if not inner:
+            continue
         before = tree.words[: inner[0].index]
         negation = next((word for word in reversed(before) if _denies(tree, word) or word.pos == "PUNCT"), None)
         if negation is None or negation.pos == "PUNCT" or wrong.low in _EXCEPTED:

@@ -29,6 +29,7 @@ _FRAMES = [
     re.compile(frame, re.IGNORECASE)
     for frame in (
         rf"{_OPENERS}(?P<sure>my name(?: is|['’]s)|(?:you (?:can|may) )?call me|i(?: am|['’]m) called) {_NAME.pattern}{_CLOSERS}{_BESIDE}",
+        rf"{_OPENERS}(?P<sure>name['’]s|(?-i:[Mm]y name(?= [A-Z]))|(?-i:[Yy]ou (?:can|may) say(?= [A-Z]))) {_NAME.pattern}{_CLOSERS}{_BESIDE}",
         rf"{_OPENERS}(?:(?P<pointing>{_IT_IS})(?: me)?|i(?: am|['’]m)) {_NAME.pattern}{_CLOSERS}{_BESIDE}",
         rf"{_OPENERS}{_NAME.pattern} (?:again )?here(?: again)?{_BESIDE}",
     )

@@ -30,6 +30,8 @@ _STUDIES = re.compile(
     r"(?<!\bmy )(?<!\bour )(?<!\bhis )(?<!\bher )(?<!\btheir )(?<!\byour )(?<!\bthe )(?<!\bof )(?<!\bfor )(?<!\bcase )"
     r"(?<=[a-z] )studies(?= (?!(?:are|were|have|show|suggest|say|find|and|on|of|is|was)\b)\w)"
 )
+_NO_WAIT = re.compile(r"\bno(?= wait[, ]+(?!for\b|to\b|until\b))", re.IGNORECASE)
+"""The *no* of *no wait, my name is Alice*: the parser would take it for a negation."""
 
 
 def preprocess(text: str) -> str:
@@ -44,4 +46,5 @@ def preprocess(text: str) -> str:
         start, end = found.span(found.lastgroup or 0)
         copy = copy[:start] + "have" + copy[end:]
     copy = _STUDIES.sub("teaches", copy)
+    copy = _NO_WAIT.sub("oh", copy)
     return _LIVES.sub(lambda found: "stays" if found[0].lower() == "lives" else "stay", copy)

@@ -5,6 +5,7 @@ from __future__ import annotations
 import re
 from collections.abc import Iterator
 
+from ravestate.language.lexicon import loaded_lexicon
 from ravestate.modules import nlp
 from ravestate.modules.meta.nlp.phrase import Phrase
 
@@ -23,7 +24,8 @@ def being_in(reader: Utterance, said: nlp.Statement) -> Iterator[Link]:
     whole = whole and all(
         one.head != "year" and (one.preposition not in ("on", "at") or one.text in said.when) for one in said.phrases
     )  # not "for six years", "on the inside"
-    if years and whole and (number := number_in(years[1])):
+    own = said.subject.text.lower() == "i" or (years and years[0] != years[1])  # not "we're three"
+    if years and whole and own and (number := number_in(years[1])):
         yield Link("age", object, value=number)
     elif object.owner is not None and (found := SAYS.get(f"be {object.head} of")):
         yield Link(found[0], object.owner)
@@ -39,7 +41,9 @@ def being_in(reader: Utterance, said: nlp.Statement) -> Iterator[Link]:
         yield Link("university", object if object.names or object.owner else next(places, object))
     elif object.preposition in ("at", "with") and (reader.known.get("employer") or reader.asked == "employer"):
         yield Link("employer", object, sure=False)
-    elif found := re.fullmatch(rf"(?:\w+ )?(?:{'|'.join(WORDS['keen'])}) (\w+?)er", text.lower()):
+    elif (found := re.fullmatch(rf"(?:\w+ )?(?:{'|'.join(WORDS['keen'])}) (\w+?)er", text.lower())) and _is_word(
+        f"{found[1]}ing"
+    ):
         yield Link("hobby", object, value=f"{found[1]}ing")  # "I'm a keen gardener"
     elif object.head == "student":
         yield Link("occupation", object, value="student")
@@ -64,6 +68,11 @@ def being_in(reader: Utterance, said: nlp.Statement) -> Iterator[Link]:
             yield Link("occupation", object, value=text.partition(" of ")[0])  # "I'm the head cook of a school"
         places = (phrase for phrase in said.phrases if phrase.preposition in ("at", "for", "with"))
         yield from (Link("employer", phrase, sure=False) for phrase in places)
+
+
+def _is_word(word: str) -> bool:
+    lexicon = loaded_lexicon()
+    return lexicon is None or not lexicon.rare(word)
 
 
 def _country(text: str, whole: str) -> str:

@@ -6,15 +6,16 @@ the named entities or the examples decide. The parser and the examples know few 
 
 from __future__ import annotations
 
+import re
 from typing import TYPE_CHECKING
 
 from ravestate.language.lexicon import loaded_lexicon
 from ravestate.modules.meta.nlp.introduction import introductions_in
 
 from .kinds import is_remark, likeness
-from .topics import NAME, TOPICS
+from .topics import NAME, NATIONS, TOPICS
 from .utterance import Utterance
-from .values import value_of
+from .values import number_in, value_of
 from .wording import among, same
 
 if TYPE_CHECKING:
@@ -25,7 +26,15 @@ def introduced_in(reader: Utterance) -> str:
     """Return the name in an introduction; empty if the user does not introduce themselves."""
     for one in introductions_in(reader.tree):
         another = one.pointing and (one.late or _means_another(reader, one.name))
-        if not another and not one.sure and (name := given_name(one.name, reader.seen)):
+        if not another and (name := given_name(one.name, reader.seen)):
+            return name
+    pieces = [piece.strip() for piece in re.split(r"[,.!?]+\s*", reader.tree.text) if piece.strip()]
+    for before, piece, after in zip(["", *pieces], pieces, [*pieces[1:], ""], strict=False):
+        aged = number_in(after) if len(pieces) > 1 else ""  # "Trev, 52"
+        answers = (
+            reader.asked == NAME and piece[:1].isupper() and piece == pieces[-1] and before
+        )  # "Okay, fine. Marisol."
+        if (aged or answers) and " " not in piece and (name := given_name(piece, reader.seen)):
             return name
     return ""
 
@@ -35,6 +44,8 @@ def given_name(words: str, seen: nlp.Analysis) -> str:
     first, *others = words.split() or [""]
     if not first or any(word.islower() and not _is_foreign(word) for word in others):
         return ""  # "Hamburg calling"
+    if all(part.lower() in NATIONS for part in words.split("-")):
+        return ""
     tags = {word.pos for word in seen.tree.words if word.text in words.split()}
     persons = {entity.label for entity in seen.entities if first in entity.text} <= {"PERSON", "ORG"}
     sure = _is_foreign(first) and not is_remark(words)

@@ -131,6 +131,8 @@ class Reader(Utterance):
             return False
         thing = said.object.text
         verb = self.verb(said)
+        if self.is_denied(said):
+            return False
         if verb is not None and verb.dep == "xcomp" and self.tree.head(verb).low == "about":
             return False  # "I was about to move"
         if any(phrase.preposition == "in" and phrase.head in WORDS["fiction"] for phrase in said.phrases):

@@ -29,6 +29,8 @@ _SAID_BACK = {
     "i": "you", "me": "you", "my": "your", "mine": "yours", "myself": "yourself", "am": "are", "'m": "are",
     "we": "you", "our": "your", "us": "you", "ours": "yours",
 }  # fmt: skip
+LEAST_PERSON = -0.15
+"""The least likeness of a name to the names of persons, for a statement about a person."""
 LEAST = 0.73
 """The least similarity of a question and the statement that answers it."""
 _FIT = {
@@ -228,6 +230,10 @@ def _is_worth_keeping(reader: Reader, said: nlp.Statement) -> bool:
     called = said.triple.predicate in ("be called", "be named")
     if _DEICTIC.match(said.object.text) or is_former(said.subject.text) or (said.verb == "be" and not said.object.text):
         return False
+    verb = reader.verb(said)
+    timed = said.verb != "be" and said.object.text and said.object.text in said.when  # "since 2010"
+    if timed or reader.is_denied(said) or (verb is not None and verb.dep == "pcomp"):  # "..., to be honest"
+        return False
     if ended_by(reader, said) or any(renamed_in(reader, said)) or _is_momentary(reader, said):
         return False
     there = (
@@ -309,8 +315,17 @@ def _about(reader: Reader, said: nlp.Statement) -> str:
         return ""
     if words and (dated or thing or (said.verb == "be" and object.names)) and not reader.noun(subject):
         return subject.text
-    person = subject.names and not subject.head and value_of(subject.text, TOPICS[NAME], reader.seen, sure=False)
-    return subject.text if person and not (reader.noun(object) or reader.noun(subject)) else ""
+    if reader.noun(object) or reader.noun(subject):
+        return ""
+    owner = subject.owner.name if subject.owner is not None and subject.head in NOUNS else ""  # "Tariq's dad"
+    named = owner or (subject.name if words or not subject.head or subject.head in WORDS["kin"] else "")
+    return (subject.name if words else subject.text) if named and _is_person(reader, named) else ""
+
+
+def _is_person(reader: Reader, name: str) -> bool:
+    """Return whether a name is rather that of a person than of a place or a firm."""
+    places = {entity.label for entity in reader.seen.entities if name in entity.text} & {"LOC", "FAC", "DATE", "NORP"}
+    return not places and likeness(name, NAME) > LEAST_PERSON and bool(value_of(name, TOPICS[NAME], reader.seen))
 
 
 def _retold(reader: Reader, said: nlp.Statement) -> str:

@@ -141,11 +141,15 @@ class _Hearing:
             return Meaning("declined", topic=topic, aloud=not asks and not self.sum)
         if topic == CONFIRM and (vouched := self.vouched()):
             return vouched
+        stated = self.reader.facts()
+        topics = {fact.topic for fact in stated if not fact.gone}
         told = asks and (not seen.advised or self.reader.asks() or asks_for_words(seen))
         if told or "ask_everything" in self.acts:
             inquiry = self.inquiry()
             if self.talk.words and asks_to_repeat(seen):
                 return Meaning("asked_words", facts=inquiry.facts if inquiry else ())
+            if inquiry and inquiry.facts[0].topic in topics:  # "my name is Ada. What is my name?"
+                asks, inquiry = False, None
             if inquiry and self.is_known(inquiry.facts[0].topic):
                 return inquiry
             if found := recalled(self.reader, (*self.told, *self.talk.said), self.known):
@@ -154,9 +158,8 @@ class _Hearing:
                 return Meaning("asked_words", facts=inquiry.facts if inquiry else ())
             if inquiry:
                 return inquiry
-        facts = self.reader.facts()
-        told = {fact.topic for fact in facts if not fact.gone}
-        facts = [fact for fact in facts if fact.topic in told or self.matters(fact)]
+        told = topics
+        facts = [fact for fact in stated if fact.topic in told or self.matters(fact)]
         if self.waits and topic not in told and "nothing" not in self.acts and not self.reader.denies_all:
             facts = [*opening(self.text, topic, seen), *facts]
         facts = facts or self_asked(seen.text, seen)

@@ -112,6 +112,12 @@ class Utterance:
         verbs = [word for word in self.tree.words if word.low == last or word.lemma == said.verb]
         return min(verbs, key=lambda word: word.pos not in ("VERB", "AUX"), default=None)
 
+    def is_denied(self, said: nlp.Statement) -> bool:
+        """Return whether a clause above a statement denies it: *it's not like I left Bosch*."""
+        verb = self.verb(said)
+        above = self.tree.head(verb) if verb is not None and verb.dep in ("advcl", "ccomp", "acl") else None
+        return above is not None and above.lemma in ("be", "'s") and bool(self.tree.children(above, "neg"))
+
     def written(self, phrase: Phrase) -> str:
         """Return a phrase with its article, as in the utterance."""
         inner = r"\s+(?:(?:the|an?)\s+)?".join(map(re.escape, phrase.text.split()))

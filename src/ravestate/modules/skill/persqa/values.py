@@ -44,12 +44,17 @@ def value_of(text: str, topic: Topic, seen: nlp.Analysis, *, sure: bool = True) 
     text = re.sub(
         r"\.(?= )|,? (?:any ?(?:more|longer)|too|as well|now|by the way)$", "", _trimmed(text), flags=re.IGNORECASE
     )
+    text = (
+        re.sub(r"^(?:my )?name (?=\w)", "", text, flags=re.IGNORECASE) if kind == "name" else text
+    )  # "my name Mehmet"
     text = re.sub(f"^(?:{_LEADS.get(kind, '')})", "", text, flags=re.IGNORECASE)
     words = text.lower().split()
     if not words or len(text) > 60 or len(words) > LONGEST.get(kind, 7):
         return None
     if kind in ("work", "subject") and any(word.low == words[0] and word.pos == "ADP" for word in seen.tree.words):
         return None  # "between jobs"
+    if kind in ("name", "people") and any(w.low == words[0] and w.pos in ("ADP", "SCONJ") for w in seen.tree.words):
+        return None  # "it's about volcanoes"
     if kind != "name" and (_DEICTIC if kind in ("activity", "thing") else _ANYTHING).match(text):
         return None
     if text.lower() in topic.nouns:  # "I go to university"
