@@ -121,7 +121,7 @@ class SentenceModel:
     def run(
         self, texts: Sequence[str] | Sequence[tuple[str, str]]
     ) -> Iterator[tuple[list[int], NDArray[Any], NDArray[Any]]]:
-        """Run the model in batches. For each, yield the indices of its texts, the first output, and the mask.
+        """Run the model in batches. For each batch, yield the indices of its texts, the first output, and the mask.
 
         The mask is 1 for tokens and 0 for padding. A batch has texts of similar length, so it needs little padding.
         """

@@ -393,7 +393,7 @@ def _joined(pieces: Sequence[_Piece], original: str) -> Normal:
 
 
 def _aligned(written: str, typed: str, start: int) -> list[int]:
-    """Return the origin of each written character. Equal beginnings and ends match; letters between spread evenly."""
+    """Return the origin of each written character. Equal beginnings and ends match; the rest is spread evenly."""
     size, wide = len(typed), len(written)
     if size == wide:
         return list(range(start, start + size))

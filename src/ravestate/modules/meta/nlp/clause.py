@@ -382,7 +382,7 @@ class Clause:
 
     @property
     def _runs_on(self) -> bool:
-        """Whether a clause after a name is a sentence of its own: *my name is Tom I live in Berlin*."""
+        """Whether this clause, after a name, is a sentence of its own: *my name is Tom I live in Berlin*."""
         noun = self.tree.head(self.verb)
         bare = noun.tag in ("NN", "NNP", "PRP") and not noun.low.endswith(("thing", "body", "one"))
         bare = bare and not self.tree.children(noun, "det", "poss", "amod", "nummod")
@@ -393,7 +393,7 @@ class Clause:
         heads = [head, *self.tree.children(head, "advmod")]  # as in "next to the station"
         phrases = [word for word in self.tree.children_of(heads, "prep", "dative") if of or word.low != "of"]
         for phrase in sorted(phrases, key=lambda word: (word.index < head.index, word.index)):
-            # Follow both prepositions of "out of" and "in Rome and in Bern", but only the first of "from May to July".
+            # "out of" and "in Rome and in Bern" count both prepositions, "from May to July" only the first.
             more = ("conj",) if self.tree.children(phrase, "pobj") else ("prep", "conj")
             prepositions = [phrase, *self.tree.children(phrase, *more)]
             nouns = [noun for noun in self.tree.children_of(prepositions, "pobj", "pcomp") if noun.low != "of"]

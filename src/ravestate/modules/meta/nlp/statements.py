@@ -85,7 +85,7 @@ class _Assertion:
         dep = clause.verb.dep
         shares = dep in ("ccomp", "xcomp", "acl") or (dep == "conj" and not clause.own_subjects)
         self._sharing = self._above if shares else None
-        """The clause above, if this clause shares the flags of that clause; else None."""
+        """The clause on which this clause depends, if both have the same flags; else None."""
 
     def statement(self, triple: Triple, subject: Phrase, object: Phrase) -> Statement:
         """Return the statement of a triple of this clause."""

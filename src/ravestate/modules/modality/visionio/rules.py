@@ -175,7 +175,7 @@ async def _nearest(ctx: rs.RuleContext, vector: Vector) -> people.Nearest | None
         return None
 
 
-# ------------------------------------------------------------------------------------ who is there
+# ------------------------------------------------------------------------------------ visitors
 
 
 @module.rule(

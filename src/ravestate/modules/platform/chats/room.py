@@ -27,7 +27,7 @@ T = TypeVar("T")
 E = TypeVar("E")
 
 LAST_WORDS = 5.0
-"""When the agent ends, it may take this many seconds for its last answers and, again, for their delivery. The next
+"""When the agent ends, it has this many seconds for its last answers, and then as many for their delivery. The next
 process does the rest."""
 
 

@@ -1,4 +1,4 @@
-"""The declaration of a goal. A goal is an ordinary rule of its module; further rules end the goal."""
+"""Declare goals. A goal is a rule of its module, which pursues the goal; other rules end the goal."""
 
 from __future__ import annotations
 

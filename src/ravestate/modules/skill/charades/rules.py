@@ -49,7 +49,7 @@ PRIORITY = 40.0
 JUST = 0.1
 """If the agent's speech ended at most this many seconds ago, this was the end of the countdown's last word."""
 SPEAKING = 6.0
-"""The longest time (seconds) that the agent waits for its last word to sound."""
+"""The agent waits at most this many seconds until its last word is audible."""
 
 
 def is_on(now: Game) -> bool:

@@ -32,7 +32,7 @@ of `HOPELESS` or less ends the reading after four passages, except for a follow-
 ENOUGH = 0.4
 """The minimum share (0 to 1) of the question's words in a passage. Passages with fewer words are not read."""
 SHORT = 24
-"""The maximum number of passages of each document that the thread is about. They need no words of the question."""
+"""The search adds at most this many passages of each document that the thread is about, whatever their words are."""
 LEVEL = 0.8
 """Two scores count as equal if they differ by less than this."""
 COMMON = 20_000

@@ -349,7 +349,7 @@ class _Follow:
         if not words:
             yield from self._instead([word for word in own if word is not one])
         kinds = [thing for thing in self.last.asked if not thing.label] if one.low in ("one", "ones") else []
-        for rank, kind in enumerate(kinds if own != self.words else ()):  # "which is the biggest one?", of volcanoes
+        for rank, kind in enumerate(kinds if own != self.words else ()):  # "which is the biggest one?" about volcanoes
             noun = kind.text.split()[-1]
             yield Reading(_question([noun if word is one else word.text for word in self.words]), LESS * (rank + 1))
 

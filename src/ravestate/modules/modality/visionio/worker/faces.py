@@ -151,7 +151,7 @@ def visibility(landmarks: np.ndarray, chip: np.ndarray) -> float:
     grey = cv2.cvtColor(chip, cv2.COLOR_RGB2GRAY)
     sharp = float(cv2.Laplacian(grey, cv2.CV_64F).var())
     parts = (
-        (distance - 8) / 22,  # more than 30 pixels between the eyes do not make a face more visible
+        (distance - 8) / 22,  # 30 pixels between the eyes are enough
         (0.45 - aside) / 0.3,  # 0: the nose is in the middle; 0.5: a profile
         sharp / 40,
         (float(grey.std()) - 8) / 20,
