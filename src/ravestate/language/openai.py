@@ -1,4 +1,4 @@
-"""A language model on any server that supports OpenAI's protocol: Ollama, llama.cpp, vLLM, LM Studio, a cloud."""
+"""A client for language models on servers with OpenAI's protocol: Ollama, llama.cpp, vLLM, LM Studio, a cloud."""
 
 from __future__ import annotations
 

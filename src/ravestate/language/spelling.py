@@ -1,4 +1,4 @@
-"""Similar spelling of sentences: the cosine of their groups of letters."""
+"""Compare the spelling of sentences, by the cosine of their groups of letters."""
 
 from __future__ import annotations
 

@@ -49,7 +49,7 @@ _WE = Phrase("we", person="I")
 
 @dataclass(frozen=True, slots=True)
 class _Unknown:
-    """The unknown of a question: its word, the top of its phrase, and its kind."""
+    """The part that a question asks for: its question word, the top word of its phrase, and its kind."""
 
     word: Word
     top: Word
@@ -139,7 +139,7 @@ class Clause:
                 return True
             if word.low == "neither" and word.dep in ("cc", "preconj", "det"):
                 return True
-            # Unlike "it's the best, no doubt" and "I'm Bob, no wait, I'm Bert".
+            # An aside negates nothing: "it's the best, no doubt", "I'm Bob, no wait, I'm Bert".
             aside = (before is not None and before.low == ",") or self.tree.head(word).dep == "advmod"
             if word.low == "no" and word.dep == "det" and after and after.low != "one" and not aside:
                 return True
@@ -278,7 +278,7 @@ class Clause:
 
     @cached_property
     def subjects(self) -> list[Part]:
-        """The subjects of the clause. If it has none: the subjects of its head clause, or the unsaid subject."""
+        """The subjects of the clause. If it has none, they are those of its head clause, or the unsaid subject."""
         own, head, verb = self.own_subjects, self.head_clause, self.verb
         above = self.tree.head(verb)
         if own and own[0].low in _RELATIVE and self._is_relative and len(own) == 1:
@@ -318,7 +318,7 @@ class Clause:
         return [phrase_of(self.tree, noun)]
 
     def _objects(self) -> list[tuple[Part, bool]]:
-        """Return the objects: the first kind, in the README's order, that the clause has. Flags: see `_parts`."""
+        """Return the objects of the first kind that the clause has, in the README's order. For the flags, see `_parts`."""
         tree, verbs = self.tree, self.verbs
         if lacks_copula(tree, self.verb):
             return self._written([self.verb], self.verb)

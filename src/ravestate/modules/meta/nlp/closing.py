@@ -1,4 +1,4 @@
-"""The question or request that ends an utterance, and the sentences before it: *haha, funny! do dogs dream?*."""
+"""Find the question or request at the end of an utterance: *do dogs dream?* in *haha, funny! do dogs dream?*."""
 
 from __future__ import annotations
 

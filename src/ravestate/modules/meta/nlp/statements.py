@@ -61,7 +61,7 @@ def statements_of(
     """Return the triples of the text, at most `MOST`, each once, with the flags of their clauses.
 
     Example:
-        The only statement of *my sister used to live in Rome* has the subject's head ``sister``, and it is past.
+        *My sister used to live in Rome* has one statement. It is past, and the head of its subject is ``sister``.
     """
     found: dict[Triple, Statement] = {}
     for clause in Clause.all_in(tree) if clauses is None else clauses:

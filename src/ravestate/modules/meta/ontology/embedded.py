@@ -1,4 +1,4 @@
-"""The embedded graph database: ladybug, with all data in one file."""
+"""A store in a single file: the embedded graph database ladybug."""
 
 from __future__ import annotations
 

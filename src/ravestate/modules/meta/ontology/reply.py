@@ -1,4 +1,4 @@
-"""The reply to an operation on memory, whose result async rules and plain functions can wait for."""
+"""The reply to an operation on memory. Async rules and plain functions can wait for its result."""
 
 from __future__ import annotations
 

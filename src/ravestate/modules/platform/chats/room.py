@@ -32,7 +32,9 @@ process does the rest."""
 
 
 class Room:
-    """All chats of an agent on a messenger: ``async with Room(agent, ...) as room``, then `receive` each message.
+    """All chats of an agent on a messenger.
+
+    Enter a room with ``async with Room(agent, ...) as room``. Then pass each message from the messenger to `receive`.
 
     On entry, the chats get the messages that the last process left unanswered.
 

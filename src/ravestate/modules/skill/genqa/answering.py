@@ -38,8 +38,8 @@ LEVEL = 0.8
 COMMON = 20_000
 """The search skips a word that is in more passages than this, unless all words of the question are so common."""
 NAMES, KINDS = 0.4, 0.7
-"""If a follow-up has only names, the share of its words that a passage is assumed to have: `KINDS` for a passage with a
-word of `Question.kinds`, `NAMES` for other passages."""
+"""If a follow-up has only names, these numbers replace the share of its words in a passage: `KINDS` if the passage has a
+word of `Question.kinds`, `NAMES` if not."""
 WORDS = 24
 """The maximum number of words to search for."""
 NOT_STATED = "no document states all of it"

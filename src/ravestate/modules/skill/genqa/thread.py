@@ -26,7 +26,7 @@ KEPT = 6
 REMEMBERED = 120.0
 """Seconds for which later questions may refer to a question."""
 LESS = -0.15
-"""The change in log odds from each reading to the next."""
+"""The log odds of a reading, relative to those of the reading before it."""
 _ONES = ("one", "ones", "former", "latter")
 _RANKS = {name: place for place, name in enumerate(["first", "second", "third", "fourth", "fifth", "sixth"])} | {
     "last": -1, "latter": -1, "former": -2,

@@ -24,8 +24,8 @@ WITHIN = 0.6
 LAP = 0.2
 """Neighbouring tiles share this part of a tile."""
 HOG = 960
-"""The picture is scaled for dlib's detector, which finds faces of 80 pixels: its longer side gets this many pixels, or
-twice as many for a thorough look."""
+"""For dlib's detector, which finds faces of 80 pixels, the longer side of a picture is scaled to this many pixels. A
+thorough look uses twice as many."""
 FACE = 110
 """To refine the box of a face, the face is scaled to this width (pixels)."""
 
