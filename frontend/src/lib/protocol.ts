@@ -117,7 +117,7 @@ export interface Welcome {
   inside?: string;
   /** The number of the newest message; 0 before the first message. */
   last?: number;
-  /** Whether the server accepts `Writing` frames. Early server releases did not. */
+  /** Whether the server accepts `Writing` frames. Servers of the first releases did not. */
   writing?: boolean;
   /** A few things that the visitor could say first. */
   suggestions?: string[];

@@ -58,7 +58,7 @@ def heard(text: str, names: Collection[str] = ()) -> tuple[str, ...]:
 def acts(sentences: Sequence[str]) -> dict[str, Match]:
     """Return the acts in the sentences of an utterance, each with the sentence that shows it best.
 
-    Until the matcher of the acts is loaded, only examples are recognised word for word: whole sentences, and formulas.
+    Until the matcher of the acts is loaded, only sentences and formulas that equal an example are recognised.
 
     Example:
         >>> sorted(acts(["Thanks, bye!"]))

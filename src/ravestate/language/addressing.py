@@ -1,4 +1,4 @@
-"""The agent's name in a sentence stands for *you*."""
+"""Replace the agent's name in a sentence by *you*."""
 
 from __future__ import annotations
 

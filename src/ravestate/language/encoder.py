@@ -1,4 +1,4 @@
-"""The meanings of sentences as vectors."""
+"""Turn sentences into vectors that stand for their meanings."""
 
 from __future__ import annotations
 
@@ -24,7 +24,7 @@ REMEMBERED = 1024
 
 
 class Encoder:
-    """An encoder of sentences: similar meanings give similar vectors.
+    """Turns sentences into vectors. Similar meanings give similar vectors.
 
     Making an encoder takes no time. Its first use loads the shared model (0.3 s). Thread-safe.
 

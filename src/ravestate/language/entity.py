@@ -7,7 +7,7 @@ from dataclasses import dataclass
 
 @dataclass(frozen=True, slots=True)
 class Entity:
-    """A name, a date, a number."""
+    """A name, a date or a number in a text."""
 
     text: str
     """The text of the entity, as written."""

@@ -1,4 +1,4 @@
-"""Example sentences by class, read from YAML files. Designers can write such files too."""
+"""Read the example sentences of classes from YAML files. Designers can write such files, too."""
 
 from __future__ import annotations
 

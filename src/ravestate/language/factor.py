@@ -1,4 +1,4 @@
-"""The factor of a large kernel matrix, from which its inverse follows."""
+"""Factor a large kernel matrix. The factor gives the inverse of the matrix."""
 
 from __future__ import annotations
 

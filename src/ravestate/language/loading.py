@@ -1,4 +1,4 @@
-"""The order in which large libraries and models load: one at a time, and after the console's prompt."""
+"""Load large libraries and models one at a time, and after the console's prompt."""
 
 from __future__ import annotations
 

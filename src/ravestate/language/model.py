@@ -95,11 +95,11 @@ class SentenceModel:
         options = runtime.SessionOptions()
         options.intra_op_num_threads = min(2, cores())
         options.inter_op_num_threads = 1
-        # Without this, onnxruntime's threads spin between two runs and take the cores from other work.
+        # Without this option, onnxruntime's threads spin between two runs and take the cores from other work.
         options.add_session_config_entry("session.intra_op.allow_spinning", "0")
-        # Without this, products of whole numbers overflow on processors without VNNI, and scores differ by machine.
+        # Without this option, integer products overflow on processors without VNNI, and scores differ by machine.
         options.add_session_config_entry("session.x64quantprecision", "1")
-        # Without this, onnxruntime keeps the memory of the longest text that it has read.
+        # Without these options, onnxruntime keeps the memory of the longest text that it has read.
         options.enable_cpu_mem_arena = options.enable_mem_pattern = False
         options.log_severity_level = 4  # log no errors, because they are raised as exceptions
         try:
@@ -121,7 +121,7 @@ class SentenceModel:
     def run(
         self, texts: Sequence[str] | Sequence[tuple[str, str]]
     ) -> Iterator[tuple[list[int], NDArray[Any], NDArray[Any]]]:
-        """Run the model in batches. For each, yield the indices of its texts, the first output, and the mask.
+        """Run the model in batches. For each batch, yield the indices of its texts, the first output, and the mask.
 
         The mask is 1 for tokens and 0 for padding. A batch has texts of similar length, so it needs little padding.
         """

@@ -31,7 +31,7 @@ if TYPE_CHECKING:
     from numpy.typing import NDArray
 
 SPREAD, FORM = 0.05, 1.0
-"""The similarity of form: its decay with the distance, and its weight in the kernel."""
+"""How fast the similarity of form decays with the distance, and the weight of this similarity in the kernel."""
 COMMON = 0.1
 """A constant that the kernel adds for any two utterances."""
 RIDGE, RIDGE_BORROWED = 0.5, 2.0

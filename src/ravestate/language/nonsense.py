@@ -1,4 +1,4 @@
-"""Recognise texts without words, from a keyboard that was hit at random."""
+"""Recognise texts that come from hitting the keyboard at random."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""The normal form of a text: typed English turned into correct written English, with offsets into the original.
+"""Turn typed English into its normal form: correct written English, with offsets into the original.
 
 A well-written sentence stays as it is. Other sentences are mended in three steps:
 
@@ -111,7 +111,7 @@ _PEOPLE = word_set(
     "baby friend mate buddy cousin uncle aunt auntie nan gran grandma grandpa grandmother grandfather granddaughter grandson "
     "niece nephew boss colleague neighbour neighbor flatmate roommate dog puppy cat kitten pet rabbit hamster horse parrot"
 )
-"""Words after which, with *my* before them, a name may follow: *my brother josh*."""
+"""Words that may stand between *my* and a name: *my brother josh*."""
 _INTRODUCING = ("name is", "name's", "this is")
 """Words before a name. An unknown word after them is probably a name, not a typing error."""
 _PARTS_OF_NAMES = word_set("new north south east west san santa los las saint el la puerto costa rio cape hong")
@@ -393,7 +393,7 @@ def _joined(pieces: Sequence[_Piece], original: str) -> Normal:
 
 
 def _aligned(written: str, typed: str, start: int) -> list[int]:
-    """Return the origin of each written character. Equal beginnings and ends match; letters between spread evenly."""
+    """Return the origin of each written character. Equal beginnings and ends match; the rest is spread evenly."""
     size, wide = len(typed), len(written)
     if size == wide:
         return list(range(start, start + size))

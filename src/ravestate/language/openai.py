@@ -1,4 +1,4 @@
-"""A language model on any server that supports OpenAI's protocol: Ollama, llama.cpp, vLLM, LM Studio, a cloud."""
+"""A client for language models on servers with OpenAI's protocol: Ollama, llama.cpp, vLLM, LM Studio, a cloud."""
 
 from __future__ import annotations
 
@@ -19,7 +19,7 @@ if TYPE_CHECKING:
     import httpx2
 
 LIMIT = 1 << 20
-"""The maximum size in bytes of a document, or of an event in a stream."""
+"""The maximum size in bytes of an answer as one JSON document, or of an event in a stream."""
 
 _EXAMPLE = "base_url=http://localhost:11434/v1"
 _OPTIONAL = {"max_tokens": "max_completion_tokens", "temperature": "", "seed": "", "stop": ""}

@@ -1,4 +1,4 @@
-"""Scores of passages as answers to a question."""
+"""Score passages as answers to a question."""
 
 from __future__ import annotations
 

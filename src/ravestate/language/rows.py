@@ -1,4 +1,4 @@
-"""Vectors of many texts, packed, and their products with a few vectors."""
+"""Keep the vectors of many texts in little memory, and compute their products with a few other vectors."""
 
 from __future__ import annotations
 

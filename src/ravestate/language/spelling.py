@@ -1,4 +1,4 @@
-"""Similar spelling of sentences: the cosine of their groups of letters."""
+"""Compare the spelling of sentences, by the cosine of their groups of letters."""
 
 from __future__ import annotations
 
@@ -19,7 +19,7 @@ _HASH, _SHIFT = 2654435761, 21
 
 
 class Spelling:
-    """Examples as vectors of their letter groups; rare groups weigh more. For each bucket, list the examples in it."""
+    """Compares texts with examples by their letter groups; rare groups weigh more."""
 
     def __init__(self, examples: Sequence[str]) -> None:
         import numpy as np

@@ -27,7 +27,7 @@ def built_in(texts: Sequence[str], size: int) -> tuple[NDArray[np.bool_], NDArra
 
     Args:
         texts: Sentences in plain form.
-        size: The size of the model's file in bytes. If the vectors were made for another size, return none.
+        size: The size of the model's file in bytes. If the vectors were made for a file of another size, return none.
     """
     import numpy as np
 

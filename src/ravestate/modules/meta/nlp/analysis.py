@@ -1,4 +1,4 @@
-"""The whole analysis of a text."""
+"""The record of the whole analysis of a text, and the function that makes it."""
 
 from __future__ import annotations
 

@@ -152,8 +152,8 @@ def _parts(text: str) -> Iterator[tuple[str, str]]:
 def _score_of_part(part: str, asks: bool) -> int | None:
     """Return the score of a part.
 
-    A part with a question mark counts only if the example that it resembles has the same word order. A sure *yes* or
-    *no* counts only if this is the word order of a question.
+    A part with a question mark counts only if the example that it resembles has the same word order. For a sure *yes*
+    or *no*, this must be the word order of a question.
     """
     match = bundled_matcher("answers").match(part)
     score = _SCORES[match.name] if match is not None else None

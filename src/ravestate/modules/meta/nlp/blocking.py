@@ -28,7 +28,7 @@ class _BlockingFinder(MetaPathFinder):
 
 @contextmanager
 def blocked(*names: str) -> Generator[None]:
-    """Raise an error if this thread imports one of the packages `names` for the first time. Other threads may.
+    """Raise an error if this thread imports a package in `names` for the first time. Other threads can import it.
 
     Example:
         >>> with blocked("this"):

@@ -49,7 +49,7 @@ _WE = Phrase("we", person="I")
 
 @dataclass(frozen=True, slots=True)
 class _Unknown:
-    """The unknown of a question: its word, the top of its phrase, and its kind."""
+    """The part that a question asks for: its question word, the top word of its phrase, and its kind."""
 
     word: Word
     top: Word
@@ -139,7 +139,7 @@ class Clause:
                 return True
             if word.low == "neither" and word.dep in ("cc", "preconj", "det"):
                 return True
-            # Unlike "it's the best, no doubt" and "I'm Bob, no wait, I'm Bert".
+            # An aside negates nothing: "it's the best, no doubt", "I'm Bob, no wait, I'm Bert".
             aside = (before is not None and before.low == ",") or self.tree.head(word).dep == "advmod"
             if word.low == "no" and word.dep == "det" and after and after.low != "one" and not aside:
                 return True
@@ -278,7 +278,7 @@ class Clause:
 
     @cached_property
     def subjects(self) -> list[Part]:
-        """The subjects of the clause. If it has none: the subjects of its head clause, or the unsaid subject."""
+        """The subjects of the clause. If it has none, they are those of its head clause, or the unsaid subject."""
         own, head, verb = self.own_subjects, self.head_clause, self.verb
         above = self.tree.head(verb)
         if own and own[0].low in _RELATIVE and self._is_relative and len(own) == 1:
@@ -318,7 +318,7 @@ class Clause:
         return [phrase_of(self.tree, noun)]
 
     def _objects(self) -> list[tuple[Part, bool]]:
-        """Return the objects: the first kind, in the README's order, that the clause has. Flags: see `_parts`."""
+        """Return the objects of the first kind that the clause has, in the README's order. For the flags, see `_parts`."""
         tree, verbs = self.tree, self.verbs
         if lacks_copula(tree, self.verb):
             return self._written([self.verb], self.verb)
@@ -382,7 +382,7 @@ class Clause:
 
     @property
     def _runs_on(self) -> bool:
-        """Whether a clause after a name is a sentence of its own: *my name is Tom I live in Berlin*."""
+        """Whether this clause, after a name, is a sentence of its own: *my name is Tom I live in Berlin*."""
         noun = self.tree.head(self.verb)
         bare = noun.tag in ("NN", "NNP", "PRP") and not noun.low.endswith(("thing", "body", "one"))
         bare = bare and not self.tree.children(noun, "det", "poss", "amod", "nummod")
@@ -393,7 +393,7 @@ class Clause:
         heads = [head, *self.tree.children(head, "advmod")]  # as in "next to the station"
         phrases = [word for word in self.tree.children_of(heads, "prep", "dative") if of or word.low != "of"]
         for phrase in sorted(phrases, key=lambda word: (word.index < head.index, word.index)):
-            # Follow both prepositions of "out of" and "in Rome and in Bern", but only the first of "from May to July".
+            # "out of" and "in Rome and in Bern" count both prepositions, "from May to July" only the first.
             more = ("conj",) if self.tree.children(phrase, "pobj") else ("prep", "conj")
             prepositions = [phrase, *self.tree.children(phrase, *more)]
             nouns = [noun for noun in self.tree.children_of(prepositions, "pobj", "pcomp") if noun.low != "of"]

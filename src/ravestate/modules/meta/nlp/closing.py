@@ -1,4 +1,4 @@
-"""The question or request that ends an utterance, and the sentences before it: *haha, funny! do dogs dream?*."""
+"""Find the question or request at the end of an utterance: *do dogs dream?* in *haha, funny! do dogs dream?*."""
 
 from __future__ import annotations
 
@@ -17,9 +17,10 @@ SHORTEST = 3
 LONGEST = 5
 """The maximum number of words of a remark."""
 MOST = 8
-"""The maximum number of sentences of an utterance. In a longer one, the last question counts no more than the rest."""
+"""The maximum number of sentences of an utterance. At the end of a longer utterance, a question counts no more than the
+rest."""
 LONG = 10
-"""The maximum number of words of a statement that the user turns into a question with *and you?*."""
+"""The maximum number of words in a statement before *and you?*."""
 
 _POINTING = word_set(
     "it that this they them those these one ones he him his she her so there another more again too else"
@@ -61,7 +62,7 @@ class Closing:
     asides: tuple[str, ...]
     """The sentences before the question or request."""
     remarks: bool
-    """Whether all asides only react to the agent, such as *haha, funny!*. *My cat is ill* tells something new."""
+    """Whether all asides only react to the agent: *haha, funny!* does, but *my cat is ill* tells something new."""
 
     returned: bool = False
     """Whether `text` is the full question that the user shortened to *and you?*."""

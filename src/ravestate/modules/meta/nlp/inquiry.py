@@ -22,9 +22,9 @@ _TELLING = word_set("tell say explain show remind describe ask inform clarify sp
 _KNOWING = word_set("know remember guess wonder see find hear understand recall")
 """Verbs of knowing before an indirect question: *do you know where*."""
 _MINDING = word_set("remember recall understand see hear")
-"""Verbs whose requests ask nothing: *remember who you are*."""
+"""Verbs of requests that are no questions: *remember who you are*."""
 _SETTLING = word_set("decide check figure work realise realize notice imagine discover determine")
-"""Verbs before an indirect question, if the clause asks by itself: *have you decided where*, but not *I decided where*."""
+"""Verbs before an indirect question, if they are in a question: *have you decided where*, but not *I decided where*."""
 _SUBJECTIVE = word_set("he she they we i")
 _THEM = word_set("him her them")
 _HINTS = word_set("idea clue reason sure")
@@ -36,7 +36,7 @@ _ANY = word_set("any ever anyone anybody anything")
 _ANYBODY = word_set("anyone anybody someone somebody any")
 """The subjects of questions and requests that leave out their auxiliary: *anyone know who*, *somebody tell me how*."""
 _NO_PREDICATE = word_set("too either neither again first next")
-"""Words after *you* that make no question: *you too*."""
+"""Words that make no question of a *you* before them: *you too*."""
 _REPORTING = (
     _TELLING
     | _KNOWING

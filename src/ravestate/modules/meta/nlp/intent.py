@@ -109,7 +109,7 @@ def doubtful_examples(intents: Intents) -> Iterator[tuple[str, str, str]]:
 
 
 def intent_matcher(intents: Iterable[Intents]) -> Matcher | None:
-    """Return the matcher of all `intents`; None without intents. Contexts with the same intents share a matcher."""
+    """Return the matcher of all `intents`; None if there are none. Contexts with the same intents share a matcher."""
     joined = tuple(item for some in intents for item in some.items())
     return _matcher(joined) if joined else None
 

@@ -1,4 +1,4 @@
-"""Introductions: *it's me, Ilka*, *Ilka here*, *my name is Ada, and I have had a long day*."""
+"""Find names in introductions of users: *it's me, Ilka*, *Ilka here*, *my name is Ada, and I have had a long day*."""
 
 from __future__ import annotations
 
@@ -44,7 +44,8 @@ _POLITE = re.compile(
 
 @dataclass(frozen=True, slots=True)
 class Introduction:
-    """Words in the place of the user's name: *Ilka* in *I'm Ilka*, but also *tired* in *I'm tired*."""
+    """A possible introduction. The words in the place of a name need not be one: *Ilka* in *I'm Ilka*, *tired* in *I'm
+    tired*."""
 
     name: str
     rest: str

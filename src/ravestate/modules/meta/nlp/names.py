@@ -60,7 +60,8 @@ normal: rs.Slot[str] = module.slot("normal", "", always=True)
 """The normal form of the last utterance: the same words as correct written English."""
 
 lock: rs.Slot[ContextLock] = module.slot("lock", ContextLock())
-"""The lock lets rules analyse one utterance at a time, because a later utterance may correct an earlier one."""
+"""The lock for the analysis of an utterance. Utterances are analysed one after another, because a later utterance may
+correct an earlier one."""
 
 tokens: rs.Slot[tuple[str, ...]] = module.slot("tokens", (), always=True)
 """The words and punctuation of the last utterance, as written."""

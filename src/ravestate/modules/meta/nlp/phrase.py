@@ -49,7 +49,7 @@ class Phrase:
 
 
 DETERMINERS = word_set("the a an this that these those some any every each all both no another neither either")
-"""Words that a phrase leaves out, unless it has no other words."""
+"""Words that the text of a phrase leaves out, unless the phrase has no other words."""
 _KEPT = ("amod", "compound", "poss", "nummod", "nmod", "case", "det", "quantmod", "pobj", "pcomp")
 _PRONOUNS = (("no", "one"), ("each", "other"))
 _SPEAKER = word_set("i me my mine myself we us our ours ourselves")
@@ -106,7 +106,7 @@ def noun_phrase(tree: Tree, head: Word, *, joined: bool = False) -> list[Word]:
 def adjective_phrase(tree: Tree, head: Word, verb: Word) -> list[Word]:
     """Return a predicate adjective with its measure (*20 years old*) and the prepositional phrase directly after it.
 
-    The prepositional phrase counts whether the parser attaches it to the adjective or to the verb.
+    It does not matter whether the parser attaches the prepositional phrase to the adjective or to the verb.
     """
     kept = [head]
     for child in tree.children(head, "npadvmod", "compound"):

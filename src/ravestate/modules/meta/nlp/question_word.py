@@ -11,7 +11,7 @@ from .tree import Word
 
 
 class QuestionWord(Enum):
-    """The kinds of questions. In a `Triple`, a kind stands for the part that the question asks for."""
+    """A kind of question. In a `Triple`, it stands in the place of the part that the question asks for."""
 
     PERSON = "person"
     """who, whom, whose"""

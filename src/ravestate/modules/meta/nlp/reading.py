@@ -1,7 +1,7 @@
 """The reading of an utterance by a language model, which may replace parts of the module's own analysis.
 
-The server must constrain the model's answer to a JSON schema. So the answer is always a `Reading`. The model may still
-answer the user's question, or leave words out. `Reading.normal` detects such a reading, and it is not used.
+The server must constrain the model's answer to a JSON schema. So the answer is always a `Reading`. Even so, the model
+may answer the user's question, or leave words out. `Reading.normal` rejects such a reading.
 """
 
 from __future__ import annotations
@@ -24,7 +24,7 @@ from .answer import YesNo
 from .question_word import QuestionWord
 
 LONGEST = 400
-"""The maximum number of characters of an utterance that the model reads. Longer ones take too long."""
+"""The maximum number of characters of an utterance for the model, because longer utterances take too long."""
 FAITHFUL = 0.6
 """The least share of letters that the written text and the user's text must have in common."""
 MOST_SKIPPED = 64
@@ -105,7 +105,7 @@ SCHEMA: dict[str, Any] = {
 
 
 class ModelReader:
-    """A reader of utterances with a language model. It never delays an answer for long.
+    """Reads utterances with a language model. It never delays an answer for long.
 
     After a failure, the next utterance is analysed without the model. Each further failure in a row doubles the number of
     such utterances, up to `MOST_SKIPPED`. The reader belongs to one event loop.

@@ -1,4 +1,4 @@
-"""Triples, and statements: triples with flags from their clauses, such as negated or past."""
+"""The records of triples and statements. A statement is a triple with flags of its clause, such as negated or past."""
 
 from __future__ import annotations
 

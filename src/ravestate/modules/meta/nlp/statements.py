@@ -61,7 +61,7 @@ def statements_of(
     """Return the triples of the text, at most `MOST`, each once, with the flags of their clauses.
 
     Example:
-        The only statement of *my sister used to live in Rome* has the subject's head ``sister``, and it is past.
+        *My sister used to live in Rome* has one statement. It is past, and the head of its subject is ``sister``.
     """
     found: dict[Triple, Statement] = {}
     for clause in Clause.all_in(tree) if clauses is None else clauses:
@@ -85,7 +85,7 @@ class _Assertion:
         dep = clause.verb.dep
         shares = dep in ("ccomp", "xcomp", "acl") or (dep == "conj" and not clause.own_subjects)
         self._sharing = self._above if shares else None
-        """The clause above, if this clause shares the flags of that clause; else None."""
+        """The clause on which this clause depends, if both have the same flags; else None."""
 
     def statement(self, triple: Triple, subject: Phrase, object: Phrase) -> Statement:
         """Return the statement of a triple of this clause."""

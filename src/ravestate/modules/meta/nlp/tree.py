@@ -58,12 +58,12 @@ class Tree:
         return children
 
     def children(self, word: Word, *deps: str) -> list[Word]:
-        """Return the words that depend directly on `word`, in text order. If given, `deps` are the only relations."""
+        """Return the words that depend directly on `word`, in text order; with `deps`, only by these relations."""
         children = self._children[word.index]
         return [child for child in children if child.dep in deps] if deps else children
 
     def children_of(self, heads: Iterable[Word], *deps: str) -> list[Word]:
-        """Return the words that depend directly on one of `heads`. If given, `deps` are the only relations."""
+        """Return the words that depend directly on one of `heads`; with `deps`, only by these relations."""
         return [child for head in heads for child in self.children(head, *deps)]
 
     def head(self, word: Word) -> Word:
@@ -92,7 +92,7 @@ class Tree:
         return self.words[word.index + 1] if word.index + 1 < len(self.words) else None
 
     def phrase(self, words: Iterable[Word]) -> str:
-        """Return `words` as written, in text order. One space stands for the text between two of them."""
+        """Return `words` as written, in text order. A space replaces the text that was between two of them."""
         written = ""
         last: Word | None = None
         for word in sorted(words, key=lambda word: word.index):

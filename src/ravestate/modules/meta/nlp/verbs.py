@@ -1,4 +1,4 @@
-"""Verbs: their lemmas, the verbs that they govern, and their clauses."""
+"""Functions about a verb: its lemma, the verbs that it governs, its particles, and whether it heads a clause."""
 
 from __future__ import annotations
 
@@ -12,7 +12,7 @@ NEGATIONS = frozenset(["not", "n't", "nt", "never"])
 PLACES = word_set("here there home abroad outside inside upstairs downstairs away everywhere nowhere somewhere")
 _HEADS = ("ROOT", "conj", "ccomp", "xcomp", "advcl", "relcl", "parataxis", "pcomp", "csubj", "dep", "acl")
 CONTACT = word_set("call phone ring text email visit meet contact write use")
-"""Verbs whose object is not the subject of an infinitive after it: in *I called him to say hello*, I say hello."""
+"""Verbs whose object is not the subject of a following infinitive: in *I called him to say hello*, I say hello."""
 SETTLING = word_set("sit stand lie get wake come go grow calm hurry slow run walk")
 """Verbs of posture and motion. They share no object with the verb after *and*: *sit down and read a book*."""
 FEELINGS = word_set(

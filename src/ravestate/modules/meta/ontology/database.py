@@ -1,6 +1,6 @@
-"""Opening and copying a ladybug database.
+"""Functions that open and copy a ladybug database.
 
-A damaged file can crash the process that opens it, so a separate process opens the file first.
+A damaged file can crash the process that opens it. So `survives` lets a separate process open the file first.
 """
 
 from __future__ import annotations
@@ -27,8 +27,8 @@ PATIENCE = 60.0
 FILE_FORMAT = 2
 """The version of the format of nodes and relations in the file; a new format has a greater number.
 
-Format 1 had a table for each type and each relation, and pairs of types for each relation. Ladybug takes 3.5 MB of main
-memory for a table of nodes, and 10 MB for a table of relations that has been written. Format 2 has only two tables.
+Format 1 had a table for each type and a table for each relation. Ladybug takes 3.5 MB of main memory for a table of
+nodes, and 10 MB for a table of relations that has been written. Format 2 has only one table of each kind.
 """
 
 META = "_ravestate"
@@ -108,7 +108,7 @@ def relation_table(columns: Mapping[str, str]) -> str:
 def aside(name: str, kind: str) -> str:
     """Return the name of a second column for a property `name`, when another kind of value occupies the first column.
 
-    Ladybug does not tell capitals apart, so the column's name has the bytes of the property's name.
+    Ladybug ignores the case of a column's name, so this name has the property's name in hexadecimal digits.
     """
     return f"_{kind}_{name.encode().hex()}"
 

@@ -1,4 +1,4 @@
-"""Documents: the content of memory as plain data for JSON."""
+"""Write and read documents, which hold the content of memory as plain data for JSON."""
 
 from __future__ import annotations
 

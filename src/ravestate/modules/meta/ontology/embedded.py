@@ -1,4 +1,4 @@
-"""The embedded graph database: ladybug, with all data in one file."""
+"""A store in a single file: the embedded graph database ladybug."""
 
 from __future__ import annotations
 
@@ -201,7 +201,7 @@ class EmbeddedStore:
         self._files.restrict()
 
     def _attempt(self, *, trial: bool, whole_log: bool = True) -> str:
-        """Open the file; return the error, or "" if there is none. With `trial`, let another process try first."""
+        """Open the file; return the error, or "" if there is none. With `trial`, a separate process opens it first."""
         if trial and not survives(self._path, whole_log=whole_log):
             return ENDS_PROCESS
         try:

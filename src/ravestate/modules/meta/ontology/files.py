@@ -56,7 +56,7 @@ class MemoryFiles:
             return 0
 
     def can_write(self) -> bool:
-        """Return whether a file as long as the log can grow by 1 MB."""
+        """Return whether the system allows a file that is 1 MB longer than the log."""
         try:
             with self.probe.open("wb") as file:
                 file.truncate(self.log_size())

@@ -239,7 +239,7 @@ class Graph:
         )
 
     def _is_wanted(self, node: Node, going: Container[object]) -> bool:
-        """Return whether a node that is not in `going`, and so stays, has a relation to `node`."""
+        """Return whether a node that stays (it is not in `going`) has a relation to `node`."""
         return any(raw.values.get("id") not in going for _, raw in self._edges(node, back=True))
 
     def _must_declare(self, node: Node) -> None:

@@ -144,8 +144,9 @@ class Memory:
         If memory is a file, no other operation runs between them. A server may run operations of other programs.
 
         Args:
-            operations: A function of the graph, called in memory's thread. The graph has the operations of this class,
-                but its operations return plain results, and take properties as mappings. Do not use the graph later.
+            operations: A function that takes a `Graph`, called in memory's thread. A `Graph` has the operations of this
+                class except `create`. They return plain results, and take properties as mappings. Do not use the
+                `Graph` later.
 
         Returns:
             The result of the function. If it raises an exception, all of its operations are rolled back.

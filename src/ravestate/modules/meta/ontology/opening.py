@@ -1,4 +1,4 @@
-"""Opening memory at the place that the settings name: in a file or on a server."""
+"""Functions that open memory at the place that the settings name: a file or a server."""
 
 from __future__ import annotations
 

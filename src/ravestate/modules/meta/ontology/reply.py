@@ -1,4 +1,4 @@
-"""The future result of an operation on memory, for async rules and plain functions."""
+"""The reply to an operation on memory. Async rules and plain functions can wait for its result."""
 
 from __future__ import annotations
 

@@ -28,8 +28,8 @@ _lock = threading.Lock()
 class StoreWorker:
     """A thread that runs jobs on a store, one at a time. In a pause, the store does its postponed work.
 
-    A process opens a file once for all contexts: a second opening would succeed and ruin the file. The thread is a
-    daemon, so a server that hangs cannot keep the process alive.
+    A process opens a memory file only once, for all of its contexts. A second opening would succeed, and ruin the file.
+    The thread is a daemon, so a server that hangs cannot keep the process alive.
     """
 
     def __init__(self, place: str, make: Callable[[], Store]) -> None:

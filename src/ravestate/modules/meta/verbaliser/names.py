@@ -22,7 +22,7 @@ class Settings(rs.Settings):
 module = rs.Module("verbaliser", requires=[rawio], settings=Settings)
 
 intent: rs.Slot[str | Intent | None] = module.slot("intent", None, type=str | Intent, always=True)
-"""The next meaning to express: the name of an intent, or an `Intent` with parameters. The agent says it immediately."""
+"""The meaning to express now: the name of an intent, or an `Intent` with parameters."""
 
 last: rs.Collection[str] = module.collection("last")
 """Name of an intent → the phrase (with placeholders) that was used for it most recently."""

@@ -197,8 +197,10 @@ class PhraseBook:
 
 
 def _begun(template: str, text: str) -> str:
-    """Return the text with a capital letter if its template begins with a parameter: *Chess? You must show me*. A
-    word like *eBay* stays as it is."""
+    """Return the text, with a capital letter if its template begins with a parameter: *Chess? You must show me*.
+
+    A word like *eBay* stays as it is.
+    """
     first = text.split(maxsplit=1)[0] if template.startswith("{") and text.strip() else ""
     return text[:1].upper() + text[1:] if first.islower() else text
 

@@ -1,4 +1,4 @@
-"""Compute the features of a normalised movement. They do not depend on its tempo, or on when it starts."""
+"""Compute the features of a normalised movement. They do not depend on the movement's tempo, or on when it starts."""
 
 from __future__ import annotations
 

@@ -33,7 +33,7 @@ RIDGE = 0.05
 SPREAD = 0.8
 """The deviations of a taught activity, relative to those of an average activity."""
 FAVOUR = 0.5
-"""This is subtracted from the cost of a taught activity, to give the activity a head start (see `_compared`)."""
+"""The cost of a taught activity is lowered by this, to give the activity a head start (see `_compared`)."""
 LIMIT = 4.0
 """A movement up to this distance from a taught activity may belong to it (mean squared deviation of the features)."""
 REMEMBERED = 64
@@ -41,7 +41,7 @@ REMEMBERED = 64
 RUNNERS_UP = 3
 """The maximum number of next most likely names."""
 FAR = 3.0
-"""An activity farther away than this many times the limit is not among the next most likely ones: it looks too
+"""An activity farther away than this many times the limit is not among the next most likely names, because it looks too
 different."""
 
 

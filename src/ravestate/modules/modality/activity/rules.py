@@ -26,7 +26,7 @@ from .recogniser import Recogniser
 GONE = 2.0
 """After this many seconds without a pose, the agent assumes that nobody is in view."""
 BEGINNING = 0.6
-"""For the first recognition, this share of `window` seconds of movement is enough."""
+"""The first recognition needs only this share of the setting `window`."""
 
 
 @module.rule(when=rs.startup, writes=(model, known), background=True)

@@ -1,4 +1,4 @@
-"""Normalise a movement: for any camera, a skeleton of unit size that faces the viewer, at a fixed frame rate."""
+"""Normalise a movement: from any camera, make a skeleton of unit size that faces the viewer, at a fixed frame rate."""
 
 from __future__ import annotations
 
@@ -41,7 +41,8 @@ class Skeleton:
     """A normalised movement of T frames. The torso has length 1; x points to the performer's left, y up, z forward."""
 
     joints: NDArray[np.float64]
-    """(T, 9, 3): the places of `JOINTS`, relative to the middle of the shoulders, or for the legs, of the hips."""
+    """(T, 9, 3): the places of `JOINTS`. Legs are relative to the middle of the hips, other joints to the middle of the
+    shoulders."""
     present: NDArray[np.bool_]
     """(9,): whether a joint is visible for long enough."""
     torso: NDArray[np.float64]

@@ -19,8 +19,8 @@ def by_chance(sentences: Sequence[str], likely: Mapping[Feeling, float], rng: ra
 
     Args:
         sentences: The user's words, in the normal form.
-        likely: The probability of each feeling on its occasion. The occasions are, in the order of `OCCASIONS`: a
-            goodbye, a greeting or thanks, words about the agent, a question. Only the first one in an utterance counts.
+        likely: The probability of each feeling on its occasion. The occasions are, in this order: a goodbye, a greeting
+            or thanks, words about the agent, a question. If there are several, only the first of this list counts.
         rng: The random number generator.
 
     Example:

@@ -37,13 +37,13 @@ shy = module.signal("shy")
 """The agent is shy, because the user pays it a compliment or talks about it."""
 
 surprised = module.signal("surprised")
-"""The agent is surprised."""
+"""The agent is surprised, because the user is surprised or asks a question."""
 
 happy = module.signal("happy")
-"""The agent is happy, spontaneously or because the user is happy."""
+"""The agent is happy, because the user is happy, greets or says thanks."""
 
 affectionate = module.signal("affectionate")
-"""The agent likes its user."""
+"""The agent feels affection, because the user shows affection or says goodbye."""
 
 sad = module.signal("sad")
 """The agent is sad, because the user is sad or has insulted it."""

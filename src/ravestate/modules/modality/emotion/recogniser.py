@@ -27,10 +27,12 @@ SHARED: Mapping[str, Feeling] = {
 feeling."""
 
 SPOILERS = frozenset({"failure", "anger", "worry"})
-"""Classes of sentences beside which the classes of `SPOILED` do not count: "I got my results, and I failed"."""
+"""If one part of a text has one of these classes, the classes of `SPOILED` do not count: "I got my results, and I
+failed"."""
 SPOILED = frozenset({"joy", "affection", "astonishing"})
 CLEAR = 0.65
-"""The minimum confidence of a class of `SPOILED`: a smile at neutral words annoys more than no smile at good news."""
+"""The minimum confidence of a class of `SPOILED`. It is high, because a smile at neutral words annoys users more than
+no smile at good news."""
 
 PICTURES: tuple[tuple[Feeling, re.Pattern[str]], ...] = (
     ("affectionate", re.compile("[❤💕💖💗💓💞💘💝💙💚💛💜🧡🤍🥰😍😘😚🤗🫂]|<3")),

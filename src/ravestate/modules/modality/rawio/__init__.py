@@ -1,4 +1,4 @@
-"""The user's text to the agent and the agent's text to the user, on any platform."""
+"""Carry text between the user and the agent, on any platform."""
 
 from __future__ import annotations
 

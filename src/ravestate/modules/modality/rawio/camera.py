@@ -21,10 +21,10 @@ class Face:
 
 
 class Camera(Protocol):
-    """The camera of a user. The agent asks for each picture, so the agent gets only as many pictures as it can look at.
+    """The camera of a user. The agent asks for each picture, so it gets only as many pictures as it can look at.
 
-    A platform whose users have cameras, for example a web page, puts this object into `rawio.camera`. A module that
-    sees asks it for pictures.
+    A platform whose users have cameras, for example a web page, puts a camera into `rawio.camera`. A module that looks
+    at pictures, such as `visionio`, asks the camera for them.
     """
 
     async def next(self) -> bytes | None:

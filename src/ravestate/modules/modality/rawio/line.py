@@ -1,4 +1,4 @@
-"""Sound in both directions: the line between the agent and a user's microphone and loudspeaker."""
+"""The line, which carries sound between the agent and a user's microphone and loudspeaker."""
 
 from __future__ import annotations
 
@@ -26,7 +26,7 @@ class Line(Protocol):
 
     @property
     def ended(self) -> bool:
-        """Whether the user's sound has ended, because it was a recording. Only silence follows."""
+        """Whether the user's sound has ended, which happens only to a recording. Silence follows."""
         ...
 
     def blocks(self) -> AsyncIterator[bytes]:

@@ -1,4 +1,4 @@
-"""The rules of consent. They ask for permission to remember a face, store it after a yes, and forget it on request."""
+"""The rules of consent. They ask for leave to remember a face, store the face after a yes, and forget it on request."""
 
 from __future__ import annotations
 

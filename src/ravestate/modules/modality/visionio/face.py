@@ -1,4 +1,4 @@
-"""The records of what the agent sees: faces, poses, and looks at pictures."""
+"""The records of sight: a face, the pose of a body, and one look at a picture."""
 
 from __future__ import annotations
 
@@ -47,7 +47,8 @@ class Pose:
     """A body in a picture.
 
     Attributes:
-        landmarks: 33 points, each x, y, z and visibility, as shares of the picture's size. None if there is no body.
+        landmarks: 33 points, each x, y, z and visibility; None if there is no body. x and y are shares of the picture's
+            width and height.
         time: The time of the picture (seconds on the context's clock).
     """
 

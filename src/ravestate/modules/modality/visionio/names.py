@@ -89,8 +89,8 @@ asking: rs.Slot[Question | None] = module.slot("asking", None, type=cast("type[Q
 """The agent's open question whether it may remember a face; None if there is none."""
 
 agreed: rs.Signal[str] = module.signal("agreed", payload=str)
-"""A visitor allows the agent to remember their face, or asks it to. The payload is their key, empty if nobody is
-seen."""
+"""A visitor allows or asks the agent to remember their face. The payload is their key; empty if the agent sees
+nobody."""
 
 refused: rs.Signal[str] = module.signal("refused", payload=str)
 """A visitor does not want the agent to remember their face. The payload is their key."""

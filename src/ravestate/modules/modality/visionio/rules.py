@@ -65,7 +65,7 @@ async def watch(ctx: rs.RuleContext) -> rs.Resign | None:
             now = ctx.now
             seen = await view.look(want, tracks.request(now), now - began, frame) if frame else None
             if view.blind:
-                ctx.emit(sighted, Sighting(Look(now, (0, 0), dropped=view.skipped), ()))  # so that people leave
+                ctx.emit(sighted, Sighting(Look(now, (0, 0), dropped=view.skipped), ()))  # so that people count as gone
             if seen is not None:
                 look = Look(now, tuple(seen["picture"]), seen["dark"], view.skipped)
                 ctx.emit(sighted, Sighting(look, tuple(tracks.update(seen["faces"], now))))
@@ -81,7 +81,7 @@ async def watch(ctx: rs.RuleContext) -> rs.Resign | None:
         if frames is not None:
             frames.close()
     await ctx.sleep(settings.gone_after + 0.1)
-    ctx.emit(sighted, Sighting(Look(ctx.now, (0, 0), dropped=view.skipped), ()))  # everybody has left
+    ctx.emit(sighted, Sighting(Look(ctx.now, (0, 0), dropped=view.skipped), ()))  # everybody counts as gone
     return None
 
 
@@ -175,7 +175,7 @@ async def _nearest(ctx: rs.RuleContext, vector: Vector) -> people.Nearest | None
         return None
 
 
-# ------------------------------------------------------------------------------------ who is there
+# ------------------------------------------------------------------------------------ visitors
 
 
 @module.rule(

@@ -1,4 +1,4 @@
-"""Tracks. A track follows a face from picture to picture, and knows when the face needs a new vector. Pure."""
+"""Tracks. A track follows a face from picture to picture, and decides when the face needs a new vector."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""The people in front of the camera, and functions that find out from faces which people come and leave. Pure."""
+"""The people in front of the camera, and functions that find out from faces which people come and leave."""
 
 from __future__ import annotations
 
@@ -101,7 +101,7 @@ class Question:
 
 @dataclass(frozen=True, slots=True)
 class Decision:
-    """The person whose face a track follows, or None for a stranger. The vectors are the evidence for this."""
+    """The person whose face a track follows (None for a stranger), with the vectors that have decided this."""
 
     person: Node | None
     vectors: tuple[Vector, ...] = ()
@@ -161,7 +161,7 @@ def of_track(visitors: Mapping[str, Visitor], track: int) -> Visitor | None:
 
 
 def in_front(visitors: Mapping[str, Visitor], history: Sequence[FaceVec]) -> Visitor | None:
-    """Return the visitor to whom the agent is talking: the one with the largest face. None if the agent sees nobody."""
+    """Return the visitor with the largest face, who counts as the speaker; None if the agent sees nobody."""
     sizes = {face.track: face.box[2] * face.box[3] for face in history}
     return max(
         visitors.values(),

@@ -207,7 +207,7 @@ class Chat:
         if people.present(context, name, person):
             return False
         new = not self._room.store.knows(self.id, person)
-        # Do not greet a person again. Muting the greeting would also mute answers to others, so first wait for these.
+        # Greet nobody twice: mute the greeting. This would also mute answers to others, so wait for the answers first.
         self._mute = not new and await self._answered(FAREWELL)
         await people.welcome(context, name, person, self._room.log)
         with contextlib.suppress(TimeoutError):

@@ -10,7 +10,7 @@ from ravestate.errors import PlatformError
 
 @dataclass(frozen=True, slots=True)
 class Person:
-    """A person on a messenger, with their id and their name there; None if they have no name."""
+    """A person on a messenger: their id, and their name (None if they have none)."""
 
     id: str
     name: str | None = None

@@ -27,12 +27,14 @@ T = TypeVar("T")
 E = TypeVar("E")
 
 LAST_WORDS = 5.0
-"""When the agent ends, it may take this many seconds for its last answers and, again, for their delivery. The next
+"""When the agent ends, it has this many seconds for its last answers, and then as many for their delivery. The next
 process does the rest."""
 
 
 class Room:
-    """All chats of an agent on a messenger: ``async with Room(agent, ...) as room``, then `receive` each message.
+    """All chats of an agent on a messenger.
+
+    Enter a room with ``async with Room(agent, ...) as room``. Then pass each message from the messenger to `receive`.
 
     On entry, the chats get the messages that the last process left unanswered.
 

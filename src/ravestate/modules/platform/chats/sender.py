@@ -19,8 +19,7 @@ SHOWN = 2.0
 """A message waits at most this many seconds for the end of a request that shows its draft."""
 
 BURST = 0.15
-"""After a pause, the turns of this many seconds need no wait. So at 25 turns per second, the first second may have 28
-turns."""
+"""After a pause, the turns of this many seconds come without a wait: at 25 turns per second, about 4 turns."""
 
 
 class Pace:

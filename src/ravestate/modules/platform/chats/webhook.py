@@ -40,7 +40,7 @@ async def listen(
     Args:
         url: The public address. The server uses only its path.
         address: The host and the port to listen on.
-        header: The name of the header by which the messenger shows the secret.
+        header: The name of the header in which the messenger sends the secret.
         secret: The secret. The server refuses a request without it.
         take: A function to call with the parsed JSON of each request.
         announce: A function to call as soon as the server listens.

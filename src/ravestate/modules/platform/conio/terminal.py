@@ -141,7 +141,7 @@ class Terminal:
         def leave_out(event: KeyPressEvent) -> None:
             """Ignore the key, because the line is full."""
 
-        @keys.add(Keys.Vt100MouseEvent, eager=True)  # prompt_toolkit fails at a pasted colour code that looks like one
+        @keys.add(Keys.Vt100MouseEvent, eager=True)  # a pasted colour code may look like this key
         def ignore(event: KeyPressEvent) -> None:
             """Ignore the mouse."""
 

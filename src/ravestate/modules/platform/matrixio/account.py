@@ -1,4 +1,4 @@
-"""The account: it logs in, joins the rooms to which it is invited, and passes their messages to `Room`."""
+"""The account: it logs in, joins the Matrix rooms that invite it, and passes their messages to the account's `Room`."""
 
 from __future__ import annotations
 
@@ -97,7 +97,7 @@ async def _log_in(client: AsyncClient, settings: Settings) -> None:
 
 
 class Inlet:
-    """Gets events from the server, and passes their messages to `room`: all chats of the account."""
+    """Gets events from the server, and passes their messages to `room`, which holds all chats of the account."""
 
     def __init__(self, client: AsyncClient, room: Room, settings: Settings) -> None:
         self._client, self._room, self._settings = client, room, settings

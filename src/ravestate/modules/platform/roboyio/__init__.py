@@ -1,4 +1,4 @@
-"""Robots: an agent hears, speaks, looks and shows its feelings through Roboy, another robot, or the stand-in."""
+"""Robots: an agent hears, speaks, looks and shows its feelings through Roboy, another robot, or a robot on a page."""
 
 from __future__ import annotations
 

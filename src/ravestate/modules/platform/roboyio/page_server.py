@@ -104,7 +104,9 @@ class PageServer:
             self._sockets.discard(websocket)
 
     def _hear(self, said: str) -> None:
-        with contextlib.suppress(ValueError, TypeError, AttributeError):  # ignore malformed frames: they are not ours
+        with contextlib.suppress(
+            ValueError, TypeError, AttributeError
+        ):  # ignore malformed frames, which the page never sends
             told: Any = json.loads(said)
             if isinstance(told.get("say"), str) and told["say"].strip():
                 self._robot.hear(told["say"].strip()[:LONGEST], float(told.get("direction", 0.0)))

@@ -120,7 +120,7 @@ class Bus:
         server.frames.send(Kind.CALL, place, own, body)
 
     def answer(self, kind: Kind, own: int, body: memoryview) -> None:
-        """Pass on an answer to the caller of the call that has the number `own` on the bus."""
+        """Pass on the answer to the call that the bus numbered `own` to the caller."""
         call = self.calls.pop(own, None)
         if call is not None and kind is Kind.FAULT:
             call.caller.frames.tell(Kind.FAULT, bytes(body).decode(), call.channel, call.number)

@@ -79,7 +79,9 @@ def look_at(slot: Bound, node: Node, graph: Mapping[str, list[dict[str, Any]]]) 
     if not count or row is None:
         alike = [row for row in graph[PLACES[binding.kind]] if _has(row, binding.type, KINDS[binding.kind])]
         known = [row["name"] for row in alike if row["name"] != name]
-        hint = f"; this type is used by {', '.join(sorted(known)[:3])}: write remap or another name" if known else ""
+        hint = (
+            f"; this type is used by {', '.join(sorted(known)[:3])}: set `remap`, or write that name" if known else ""
+        )
         return Line(False, slot.name, f"{bound}: no {OTHERS[binding.kind]}{hint or ': start the other node'}")
     if row["types"] and not _has(row, binding.type, KINDS[binding.kind]):
         return Line(

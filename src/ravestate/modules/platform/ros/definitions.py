@@ -59,7 +59,7 @@ class Definitions:
         """Return the text of the definition of a type, given by its full name; None if there is no definition.
 
         Raises:
-            PlatformError: A file or folder of the user is missing, or unreadable.
+            PlatformError: A file or folder of the user is missing, or a definition file is unreadable.
         """
         package, kind, short = name.split("/")
         for path in self._files(package, kind, short):

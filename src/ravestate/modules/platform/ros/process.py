@@ -16,7 +16,8 @@ from .frames import Frames, Handle, Kind
 from .places import Place
 
 BACK_OFF = (0.1, 0.3, 1.0, 3.0)
-"""The waits before a new process replaces a dead one (seconds). They grow until a process does some work."""
+"""The waits before a new process replaces a dead one (seconds). Each death leads to a longer wait, until a process does
+some work."""
 
 ENDING = 3.0
 """A process may take this many seconds to end cleanly."""
@@ -95,7 +96,7 @@ class BridgeProcess:
             self._again.cancel()
         frames, process = self._frames, self._process
         if frames is not None and process is not None:
-            if self._works:  # otherwise it waits for a master, and has nothing to finish
+            if self._works:  # otherwise, the process waits for a ROS master, and has nothing to finish
                 frames.send(Kind.CLOSE)
                 with contextlib.suppress(TimeoutError):
                     async with asyncio.timeout(ENDING):

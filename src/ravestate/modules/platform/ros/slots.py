@@ -104,11 +104,11 @@ class Goal:
 
 
 class Declarations:
-    """Declares slots of one version of ROS on modules.
+    """Declares slots for one version of ROS on designers' modules.
 
     Args:
         version: 1 or 2.
-        module: The module ``ros1`` or ``ros2``. Modules with such slots require it.
+        module: The module ``ros1`` or ``ros2``. A designer's module with such slots requires it.
         node: The module's slot with the node of the context.
     """
 
@@ -135,7 +135,7 @@ class Declarations:
             module: The module to declare the slot on.
             name: The slot's name.
             topic: The topic, for example ``/chat``. Relative names and ``~private`` names are allowed.
-            type: The type of its messages, for example ``std_msgs/String``.
+            type: The type of the topic's messages, for example ``std_msgs/String``.
             keep: With ``latest``, a newer message replaces a waiting one. With ``all``, the slot gets every message.
             rate: The maximum number of messages per second. The slot gets the newest message of each interval.
             qos: ROS 2: ``sensor_data``, ``latched``, or a dict of ``depth``, ``reliability``, ``durability``.
@@ -373,7 +373,7 @@ async def perform(ctx: rs.RuleContext, slot: ActionSlot, goal: Any) -> Any:
 
 
 def module_of(module: Any) -> rs.Module:
-    """Return the module that an argument denotes."""
+    """Return the module for an argument: the module itself, or the package that holds it."""
     return as_module(module)
 
 

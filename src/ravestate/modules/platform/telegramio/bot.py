@@ -73,7 +73,7 @@ async def _log_in(bot: Bot, root: str) -> User:
 
 
 class Inlet:
-    """Gets updates from the server, and passes their messages to a room."""
+    """Gets updates from the server, and passes their messages to `room`, which holds all chats of the bot."""
 
     def __init__(self, bot: Bot, me: User, room: Room, carrier: TelegramCarrier, settings: Settings) -> None:
         self._bot, self._me, self._room, self._carrier, self._settings = bot, me, room, carrier, settings

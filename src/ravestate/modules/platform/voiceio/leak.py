@@ -16,7 +16,7 @@ MEMORY = 16
 SILENT = 100.0
 """A frame with less power than this counts as silence."""
 FIRST = 10 ** (-13 / 10)
-"""The expected share of the loudspeaker's power at first, before the canceller has learnt the room."""
+"""The expected share of the loudspeaker's power at first, before the canceller has adapted to the room."""
 LEAST, MOST = 1e-6, 0.25
 """The limits of the expected share."""
 CLEAR = 10.0
@@ -39,10 +39,10 @@ TWICE = 2
 DOUBTFUL = 12
 """A line counts as free of echo after this many frames (0.24 s) with sound on both sides, but without an echo."""
 QUIET = 0.25
-"""A frame in which the microphone is silent counts only this much, because an echo may be late."""
+"""A frame in which the microphone is silent counts only this much towards `DOUBTFUL`, because an echo may be late."""
 OFTEN, SELDOM = 2, 8
-"""A comparison takes milliseconds, so the sounds are compared once in this many frames, before and after the first
-decision."""
+"""The two sounds are compared once in `OFTEN` frames until the first decision, and once in `SELDOM` frames after it. A
+comparison takes milliseconds."""
 GONE = 250
 """The same as `DOUBTFUL`, but for a line that has had an echo (5 s). A person may have spoken louder than the echo."""
 
@@ -114,7 +114,7 @@ class Leak:
 
     @property
     def _loudest(self) -> float:
-        """The greatest possible share of an echo. It stays the same even if the user speaks from the first moment."""
+        """The greatest possible share of an echo, from its measured strength. The user's speech does not raise it."""
         if self._strength is None or self._frame < SETTLED:
             return CLEAR * MOST
         return MARGIN * self._strength

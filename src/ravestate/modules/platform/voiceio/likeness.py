@@ -49,8 +49,8 @@ def likeness(near: NDArray[np.float32], far: NDArray[np.float32]) -> tuple[float
 def strength(near: NDArray[np.float32], far: NDArray[np.float32], delay: int) -> float:
     """Return the share of the loudspeaker's power that the microphone hears, even while a person is speaking.
 
-    The share is the part of the power that depends on the loudspeaker's sound in each band (Welch's coherence). The
-    power of another voice is divided by the number of windows. With 14 windows, it counts 11 dB less.
+    In each band, only the part of the microphone's power that follows the loudspeaker's sound counts (Welch's
+    coherence). The power of another voice is divided by the number of windows: with 14 windows, it counts 11 dB less.
 
     Args:
         near, far: As for `likeness`.

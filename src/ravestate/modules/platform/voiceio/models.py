@@ -55,7 +55,7 @@ def whisper_models() -> Iterator[tuple[str, Path]]:
 
 
 def fetch_whisper(name: str, progress: Callable[[str], None]) -> Path:
-    """Download a model for faster-whisper by its name (``base``, ``small.en``) or repository into the user's folder.
+    """Download the faster-whisper model `name` (``base``, ``small.en`` or a repository) into the user's folder.
 
     Raises:
         PlatformError: The package is missing, the name is unknown, or the download fails.

@@ -161,7 +161,7 @@ async def take_turn(ctx: rs.RuleContext) -> rs.Resign | None:
 
 @module.rule(when=another_speaks, reads=conversation, emits=(utterance, false_alarm))
 async def take_first_turn(ctx: rs.RuleContext) -> rs.Resign | None:
-    """Handle the turn of the person who spoke first separately, because the words of two people are not one sentence."""
+    """Handle the first person's turn by itself, because the words of two people are not one sentence."""
     talk, turn = ctx[conversation], ctx.payload(another_speaks)
     if talk is None:
         return rs.Resign("the line is closed")
@@ -239,7 +239,7 @@ async def speak(ctx: rs.RuleContext) -> rs.Resign | None:
         talk.mouth.growing = None
         growing.grow(rest or "")
         growing.finish()  # if no rule sets `rawio.speaking`, only the new utterance shows that the old one has ended
-        if growing.over and rest is not None:  # it was cut off while it grew; note the heard part now
+        if growing.over and rest is not None:  # the utterance was cut off while it grew; note the heard part now
             ctx[rawio.heard] = growing.heard
     if rest is None and speakable(text):
         ctx.emit(speech, Speech(text, whole=True))

@@ -128,9 +128,9 @@ def _devices(sessions: Sessions) -> list[str]:
 
 
 def _bounds(framing: Iterable[str], devices: Iterable[str]) -> dict[str, str]:
-    """Return headers that restrict scripts. They let only the page's own site and the origins in `framing` embed it.
+    """Return headers that restrict scripts. Only the page's own site and the origins in `framing` may embed the page.
 
-    They let the page use the microphone and the camera only if these are among the `devices`.
+    The headers let the page use the microphone and the camera only if these are among the `devices`.
     """
     policy = (
         "default-src 'none'",

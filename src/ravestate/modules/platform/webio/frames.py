@@ -133,7 +133,7 @@ class Welcome:
         agent: The agent's name.
         inside: The address of the board for this conversation, relative to the page; None if there is no board.
         last: The number of the newest message; 0 before the first message.
-        writing: Whether the server accepts `Writing` frames. Early server releases did not.
+        writing: Whether the server accepts `Writing` frames. Servers of the first releases did not.
         suggestions: A few things that the visitor could say first.
         note: A line of text that the page shows until the visitor has said something; None if there is none.
         voice: Whether the agent can hear and speak. If so, the server accepts `Microphone` frames and sound.

@@ -42,7 +42,10 @@ log.addFilter(lambda record: record.msg not in FOREIGN)
 
 
 class LimitedHTTP(H11Protocol):
-    """HTTP with time limits, and with limits on connections, including WebSockets: `most` in total, and `per_address`."""
+    """HTTP with time limits, and at most `most` connections, `per_address` of them from one address.
+
+    WebSockets count as connections, too.
+    """
 
     def __init__(self, *args: Any, per_address: int, most: int, **kwargs: Any) -> None:
         super().__init__(*args, **kwargs)

@@ -38,7 +38,7 @@ STALL = 5.0
 """A browser window loses the line if it plays none of its sound for this many seconds."""
 
 DEAF = 30.0
-"""A browser window loses the line if no rule listens to it within this many seconds. Models may load slowly."""
+"""A browser window loses the line if no rule listens to the line within this many seconds. Models may load slowly."""
 
 
 class Window(Protocol):

@@ -1,7 +1,7 @@
 """The web protocol, version 1: JSON frames, sound and pictures over a WebSocket between an agent and its visitors.
 
 ``docs/reference/web-protocol.md`` describes each frame. The records are in `frames`, the types of their fields in `fields`.
-Nothing here reads or writes a connection: `parse` and `serialise` translate between text and records.
+This file reads and writes no connection: `parse` and `serialise` translate between text and records.
 
 Example:
     >>> from ravestate.modules.platform.webio.frames import Typing

@@ -1,4 +1,4 @@
-"""The declaration of a goal. A goal is an ordinary rule of its module; further rules end the goal."""
+"""Declare goals. A goal is a rule of its module, which pursues the goal; other rules end the goal."""
 
 from __future__ import annotations
 
@@ -123,7 +123,7 @@ def goal(
         when=condition | goals.changed.where(is_over).detached(),
         reads=reads,
         writes=(rawio.output, goals) if intent is None else (verbaliser.intent, rawio.output, goals),
-        weight=priority,  # no `cooldown=` here: during a rule's cool-down, other rules only go first; this rule resigns
+        weight=priority,  # no `cooldown=` here: it would only let other rules go first, but this rule must resign
         until=rawio.input.changed | goals.changed.where(is_over),  # the goal may be reached while `say()` runs
         detached=True,  # a new causal group begins, so that rules can react to the user's answer
         name=name,

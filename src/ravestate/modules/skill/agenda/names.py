@@ -1,4 +1,4 @@
-"""The module, its settings, slots and signals."""
+"""The names of `agenda`: its settings, its module, its collections and its signal."""
 
 from __future__ import annotations
 

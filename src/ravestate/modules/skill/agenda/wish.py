@@ -28,7 +28,7 @@ Expression = Annotated[str, Field(min_length=1), AfterValidator(_expression), Be
 
 
 class Wish(BaseModel):
-    """A goal in the settings; the fields are the arguments of `goal`.
+    """A goal in the settings. Its fields are arguments of `agenda.goal`.
 
     Example:
         >>> Wish(name="ice_cream", say="Do you know my ice cream?", done="yes|ice cream").tries

@@ -26,7 +26,8 @@ class Settings(rs.Settings):
     life: Path | None = None
     """The designer's life file. It changes the facts and topics that it mentions; all others stay."""
     prompt_after: Annotated[float, Field(gt=0)] = 60.0
-    """Seconds of silence after which the agent invites the user to ask about the agent. This happens only once."""
+    """Seconds of silence after which the agent invites the user to ask about the agent. This happens only once, and only
+    after six utterances of the user."""
 
     @field_validator("life")
     @classmethod

@@ -15,7 +15,7 @@ from ravestate.modules.meta.nlp.analysis import Analysis
 from .life import Life
 
 SURE = 0.9
-"""The least confidence at which an act or a feeling is a remark. It is high, because banter resembles insults."""
+"""The least confidence at which an act or a feeling counts as a remark. It is high, because banter resembles insults."""
 _YOU = frozenset(["you", "your"])
 _I = frozenset(["i", "me", "my", "myself"])
 _ORDERS = frozenset(["shut", "go", "get", "fuck", "piss", "screw", "stop"])
@@ -28,7 +28,7 @@ class Remark:
 
     topic: str
     text: str
-    """The sentence in the plain form."""
+    """The sentence in the plain form: lower case, no punctuation, short forms written out."""
 
 
 def remark_in(utterance: str, life: Life, names: Collection[str] = ()) -> Remark | None:
@@ -65,7 +65,9 @@ def act_in(analysis: Analysis, life: Life) -> Remark | None:
         for known in topic.acts:
             found = analysis.acts.get(known) or analysis.feelings.get(known)
             aside = known not in analysis.acts and len(analysis.sentences) > 1
-            sure = found is not None and found.score >= SURE and "say_word" not in analysis.asks  # "say damn"
+            sure = (
+                found is not None and found.score >= SURE and "say_word" not in analysis.asks
+            )  # "say damn" is a request
             if (
                 known == "insult"
                 and found is not None

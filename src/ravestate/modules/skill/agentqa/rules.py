@@ -210,7 +210,7 @@ def _returns(seen: Analysis) -> bool:
 
 
 def intent(topic: str, phrases: Sequence[str]) -> Intent:
-    """Return an intent with phrases whose facts are filled in. Other braces belong to facts, so they are escaped."""
+    """Return an intent with these phrases, whose facts are already filled in. Escape the braces that facts contain."""
     texts = [phrase.replace("{", "{{").replace("}", "}}") for phrase in phrases]
     return Intent(f"agentqa:{topic}", phrases={"en": texts})
 

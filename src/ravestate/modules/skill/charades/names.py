@@ -1,4 +1,4 @@
-"""The module, its settings, signals and slots."""
+"""The names of `charades`: its settings, its module, its signals and slots."""
 
 from __future__ import annotations
 

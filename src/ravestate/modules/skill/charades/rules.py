@@ -47,9 +47,9 @@ FEELINGS: dict[Feeling, rs.Signal[None]] = {
 PRIORITY = 40.0
 """The weight of the answers in a game, which outrank all other answers, such as agentqa's answer to "stop"."""
 JUST = 0.1
-"""If the agent's speech ended at most this many seconds ago, this was the end of the countdown's last word."""
+"""Speech that ended at most this many seconds ago counts as the last word of the countdown."""
 SPEAKING = 6.0
-"""The longest time (seconds) that the agent waits for its last word to sound."""
+"""The agent waits at most this many seconds until its last word is audible."""
 
 
 def is_on(now: Game) -> bool:

@@ -1,4 +1,4 @@
-"""The module, its settings, slots and signals."""
+"""The names of `fillers`: its settings, its module, its slots and signals."""
 
 from __future__ import annotations
 

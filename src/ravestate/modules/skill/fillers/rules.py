@@ -11,8 +11,8 @@ from .names import filled, late, lost, module, promised, waiting
 ENOUGH = 5.0
 """The minimum number of seconds between two fillers."""
 REMEMBERED = 120.0
-"""For this many seconds, the module remembers which words of the user an output answers. A later output counts as an
-answer to the user's latest words."""
+"""For this many seconds, the module remembers which words of the user an output answers. After that, an output counts
+as an answer to the user's latest words."""
 
 
 @module.rule(

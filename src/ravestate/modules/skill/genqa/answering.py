@@ -32,14 +32,14 @@ of `HOPELESS` or less ends the reading after four passages, except for a follow-
 ENOUGH = 0.4
 """The minimum share (0 to 1) of the question's words in a passage. Passages with fewer words are not read."""
 SHORT = 24
-"""The maximum number of passages of each document that the thread is about. They need no words of the question."""
+"""The search adds at most this many passages of each document that the thread is about, whatever their words are."""
 LEVEL = 0.8
 """Two scores count as equal if they differ by less than this."""
 COMMON = 20_000
 """The search skips a word that is in more passages than this, unless all words of the question are so common."""
 NAMES, KINDS = 0.4, 0.7
-"""If a follow-up has only names, the share of its words that a passage is assumed to have: `KINDS` for a passage with a
-word of `Question.kinds`, `NAMES` for other passages."""
+"""If a follow-up has only names, these numbers replace the share of its words in a passage: `KINDS` if the passage has a
+word of `Question.kinds`, `NAMES` if not."""
 WORDS = 24
 """The maximum number of words to search for."""
 NOT_STATED = "no document states all of it"

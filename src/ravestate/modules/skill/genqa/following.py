@@ -131,7 +131,10 @@ def _again(text: str, before: str) -> str:
 
 
 def _decided(answerer: Answerer, question: Question, settings: Settings, titles: Sequence[str]) -> Answer:
-    """Return the answer of the documents, first to `other_wording`. A vague question gets no sure answer."""
+    """Return the documents' answer to `other_wording`, or if it is not sure, to the question itself.
+
+    A vague question gets no sure answer.
+    """
     if not question.declined and (other := other_wording(question.text)):
         decided = answerer.answer(other, titles)
         if decided.confidence >= settings.sure:

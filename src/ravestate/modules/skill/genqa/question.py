@@ -241,7 +241,7 @@ def _qualifiers(heard: Parse) -> tuple[list[tuple[str, ...]], list[str]]:
     avoids: list[str] = []
     tree, ranks = heard.tree, words_of("ranks")
     named = {i for e in heard.entities if e.label in (*_NAMES, "DATE", "TIME") for i in range(e.start, e.end)}
-    decides = heard.kind is QuestionWord.YES_NO  # a passage that means "no" has another name: "The capital is Berlin."
+    decides = heard.kind is QuestionWord.YES_NO  # a passage with another name may mean "no": "The capital is Berlin."
     asked_ranks = {word.low for word in heard.asked if word.low in ranks}
     for word in heard.asked:
         if word.dep == "neg" or word.low in ("no", "never"):

@@ -210,7 +210,7 @@ def _in_digits(text: str) -> str:
     from text_to_num import alpha2digit  # pyright: ignore[reportMissingTypeStubs,reportUnknownVariableType]
 
     digits = str(alpha2digit(text.lower(), "en", 0.0)).replace(" a 1", " 1")  # pyright: ignore[reportUnknownArgumentType]
-    scaled = r"(\d[\d,.]*) (10{3}|10{6}|10{9})\b"  # 1.5 million
+    scaled = r"(\d[\d,.]*) (10{3}|10{6}|10{9})\b"  # as in "1.5 million"
     return re.sub(scaled, lambda found: f"{float(found[1].replace(',', '')) * int(found[2]):.15g}", digits)
 
 
@@ -232,7 +232,7 @@ def _sum(spoken: str, told: Sequence[str], rates: Mapping[str, float]) -> str:
         if token[0].isdigit():
             if parts and parts[-1][0].isdigit():
                 return ""
-            parts += ["+"] if parts and parts[-1].startswith("*u") else []  # 5 feet 10 inches
+            parts += ["+"] if parts and parts[-1].startswith("*u") else []  # as in "5 feet 10 inches"
             parts.append(token.replace(",", ""))
         elif token in ("square", "cubic") and place + 1 < len(tokens) and tokens[place + 1] in _units():
             power = "**2" if token == "square" else "**3"

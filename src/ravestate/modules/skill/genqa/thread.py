@@ -26,7 +26,7 @@ KEPT = 6
 REMEMBERED = 120.0
 """Seconds for which later questions may refer to a question."""
 LESS = -0.15
-"""The change in log odds from each reading to the next."""
+"""The log odds of a reading, relative to those of the reading before it."""
 _ONES = ("one", "ones", "former", "latter")
 _RANKS = {name: place for place, name in enumerate(["first", "second", "third", "fourth", "fifth", "sixth"])} | {
     "last": -1, "latter": -1, "former": -2,
@@ -349,7 +349,7 @@ class _Follow:
         if not words:
             yield from self._instead([word for word in own if word is not one])
         kinds = [thing for thing in self.last.asked if not thing.label] if one.low in ("one", "ones") else []
-        for rank, kind in enumerate(kinds if own != self.words else ()):  # "which is the biggest one?", of volcanoes
+        for rank, kind in enumerate(kinds if own != self.words else ()):  # "which is the biggest one?" about volcanoes
             noun = kind.text.split()[-1]
             yield Reading(_question([noun if word is one else word.text for word in self.words]), LESS * (rank + 1))
 

@@ -1,4 +1,4 @@
-"""Greet users who come or say hello, and say goodbye to users who leave or say goodbye."""
+"""Greet users who come or greet, and say goodbye to users who leave or say goodbye."""
 
 from __future__ import annotations
 

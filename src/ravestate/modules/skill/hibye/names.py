@@ -1,4 +1,4 @@
-"""The module, its signals and its slots."""
+"""The names of `hibye`: its module, its signals and its slots."""
 
 from __future__ import annotations
 

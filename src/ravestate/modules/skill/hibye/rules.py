@@ -24,7 +24,7 @@ GENERAL = 0.15
 @module.rule(
     when=interloc.users.added | interloc.recognised,
     writes=(verbaliser.intent, greeted),
-    weight=1.1,  # this rule outranks a simultaneous goodbye
+    weight=1.1,  # if a user comes and another one leaves at the same time, the greeting wins
 )
 async def greet_arrivals(ctx: rs.RuleContext) -> None:
     """Greet a user who comes, or whom a platform has recognised."""

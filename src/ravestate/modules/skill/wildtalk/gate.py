@@ -1,4 +1,4 @@
-"""The check of generated sentences before they are spoken."""
+"""Check generated sentences before the agent says them."""
 
 from __future__ import annotations
 
@@ -19,10 +19,10 @@ from .listening.material import material
 from .listening.tongue import tongue_of
 
 FAR, NEAR, UNRELATED = 0.45, 0.56, -10.9
-"""The gate refuses answers whose similarity to the conversation is below FAR. From FAR to NEAR, it refuses those that
+"""The gate refuses answers whose similarity to the conversation is below FAR. From FAR to NEAR, it refuses answers that
 the cross-encoder scores below UNRELATED.
 
-Calibrated on small talk: all of 25 fitting answers pass, and 9 of 10 misplaced answers are refused.
+The three limits are calibrated on small talk: all 25 fitting answers pass, and 9 of 10 misplaced answers are refused.
 """
 SURE = 0.85
 """The minimum confidence at which a sentence counts as out of character."""
@@ -40,7 +40,7 @@ _FORMS = {
 
 
 class Gate:
-    """The check of one generated answer, sentence by sentence.
+    """Checks one generated answer, sentence by sentence.
 
     Example:
         >>> gate = Gate("Rosie", "Tell me something.")

@@ -1,4 +1,4 @@
-"""The conversation so far, and the prompt made of it."""
+"""The conversation so far, and the prompt that is made from it."""
 
 from __future__ import annotations
 

@@ -18,7 +18,7 @@ from typing import Any
 
 
 def _main() -> None:
-    signal.signal(signal.SIGINT, signal.SIG_IGN)  # Ctrl-C is for the parent, which closes this process in order
+    signal.signal(signal.SIGINT, signal.SIG_IGN)  # Ctrl-C is for the parent, which then closes this process
     config: dict[str, Any] = json.loads(sys.stdin.readline())
     out = os.dup(1)
     os.dup2(2, 1)  # llama.cpp's own output must not mix with the address

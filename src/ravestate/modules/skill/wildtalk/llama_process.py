@@ -130,7 +130,7 @@ class LlamaProcess:
 
     def _wait(self, process: subprocess.Popen[str]) -> str:
         assert process.stdin is not None and process.stdout is not None
-        with contextlib.suppress(OSError):  # the process died at once; its exit code explains why
+        with contextlib.suppress(OSError):  # the process has already ended; its exit code explains why
             config = {**asdict(self.key), "path": str(self.key.path), "key": self.secret}
             process.stdin.write(json.dumps(config) + "\n")
             process.stdin.flush()

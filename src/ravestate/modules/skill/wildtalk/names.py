@@ -1,4 +1,4 @@
-"""The module, its settings and slots."""
+"""The names of `wildtalk`: its settings, its module, its slots and its signal."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Functions for the rules: they use the listening skill, the gate for generated sentences, and the prompt."""
+"""Functions for the rules of small talk: they use the listening skill and the gate, and find notes for the prompt."""
 
 from __future__ import annotations
 
@@ -76,11 +76,10 @@ def heard_in(ctx: rs.RuleContext, text: str, seen: nlp.Analysis | None) -> Heard
 
 
 def may_suit(seen: nlp.Analysis | None) -> bool:
-    """Return whether `comfort` may have an answer to the utterance; the rule looks closer, in a thread.
+    """Return whether the rule `comfort` may have an answer to the utterance. The rule looks closer, in a thread.
 
-    This is a predicate, so it runs on the event loop. A comparison with the examples would take some 20 ms there, so
-    `comfort` makes it in a thread; the rule therefore starts for most statements.
-    Until the examples are learnt, even the other checks would wait for them. So until then, every utterance may suit.
+    This predicate runs on the event loop, so it must not compare the utterance with examples, which takes about 20 ms.
+    Its other checks would wait for the examples, so it accepts every utterance until the examples are learnt.
     """
     if seen is None or not learnt.is_set():
         return seen is not None
@@ -95,12 +94,12 @@ def may_need_comfort(seen: nlp.Analysis) -> bool:
 
 
 def needs_comfort(seen: nlp.Analysis) -> bool:
-    """Return whether the user is in sorrow: both the feeling and the likely move say so. Takes some 10 ms, in a thread."""
+    """Return whether the user is in sorrow, by the feeling and the likely move. Use a thread: this takes 10 ms."""
     return may_need_comfort(seen) and listener().overhear(seen, None).tone == "sad"
 
 
 def may_claim(seen: nlp.Analysis) -> bool:
-    """Return whether the utterance may be a move in the talk, such as a request for a joke. `claims` looks closer."""
+    """Return whether small talk may have to answer, for example a request for a joke. `claims` looks closer."""
     return listener().claims(Heard(seen.text, seen))
 
 
@@ -120,7 +119,7 @@ def may_be_known(seen: nlp.Analysis) -> bool:
 
 
 def is_known(seen: nlp.Analysis) -> bool:
-    """Return whether the listening skill has a reply to these words or almost the same. Takes 10 to 60 ms, in a thread."""
+    """Return whether the listening skill has a reply to such words. Use a thread: this takes 10 to 60 ms."""
     skill = listener()
     return may_be_known(seen) and skill.knows(seen, roughly=True) and skill.knows(seen)
 

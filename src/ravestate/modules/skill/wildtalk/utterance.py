@@ -28,7 +28,7 @@ class Utterance:
     The filter removes thoughts, the agent's name at the beginning, quotation marks around everything, and control
     characters. It removes emoji, which small models overuse, unless nothing else is left. White space becomes single
     spaces. The utterance is `complete`, and ignores further pieces, after `sentences` sentences, or when the model
-    begins to speak for somebody else.
+    begins to speak for another speaker.
 
     Text at the end that may become a mark is held back, so the result does not depend on the size of the pieces.
 

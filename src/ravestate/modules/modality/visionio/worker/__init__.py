@@ -29,7 +29,7 @@ def load(config: dict[str, Any]):
     """Load the shared models, and return the function that handles a request.
 
     Args:
-        config: Its item ``want`` names what requests will ask for: ``faces``, ``pose`` or both.
+        config: Its item ``want`` lists what requests will ask for: ``faces``, ``pose`` or both.
     """
     with contextlib.suppress(OSError):
         os.nice(10)  # the conversation comes first

@@ -24,8 +24,8 @@ WITHIN = 0.6
 LAP = 0.2
 """Neighbouring tiles share this part of a tile."""
 HOG = 960
-"""The picture is scaled for dlib's detector, which finds faces of 80 pixels: its longer side gets this many pixels, or
-twice as many for a thorough look."""
+"""For dlib's detector, which finds faces of 80 pixels, the longer side of a picture is scaled to this many pixels. A
+thorough look uses twice as many."""
 FACE = 110
 """To refine the box of a face, the face is scaled to this width (pixels)."""
 
@@ -151,7 +151,7 @@ def visibility(landmarks: np.ndarray, chip: np.ndarray) -> float:
     grey = cv2.cvtColor(chip, cv2.COLOR_RGB2GRAY)
     sharp = float(cv2.Laplacian(grey, cv2.CV_64F).var())
     parts = (
-        (distance - 8) / 22,  # more than 30 pixels between the eyes do not make a face more visible
+        (distance - 8) / 22,  # 30 pixels between the eyes are enough
         (0.45 - aside) / 0.3,  # 0: the nose is in the middle; 0.5: a profile
         sharp / 40,
         (float(grey.std()) - 8) / 20,

@@ -16,7 +16,9 @@ class Pose:
         self._landmarks = Landmarks(model_complexity=1)
 
     def find(self, picture: Picture, header: dict[str, Any]) -> list[list[float]] | None:
-        """Return 33 landmarks, each (x, y, z, visibility) as shares of the picture's size. None if there is no body.
+        """Return 33 landmarks, each (x, y, z, visibility), or None if there is no body.
+
+        x and y are shares of the picture's width and height.
 
         Args:
             picture: The picture.

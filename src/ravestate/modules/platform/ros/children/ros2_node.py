@@ -14,7 +14,7 @@ LOOK = 1.0  # seconds between two looks at the types of other nodes
 
 UNKNOWN = "_NODE_NAME_UNKNOWN_"
 
-STATUS = {4: "succeeded", 5: "cancelled", 6: "aborted"}  # of action_msgs/GoalStatus
+STATUS = {4: "succeeded", 5: "cancelled", 6: "aborted"}  # final states of a goal in action_msgs/GoalStatus
 
 
 class Ros2Node:
