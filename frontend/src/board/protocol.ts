@@ -225,7 +225,7 @@ export interface Node {
 /**
  * A rule did not take a spike.
  *
- * The spike's `payload` did not fit, its cause was `consumed`, or the rule itself had `caused` the spike.
+ * `reason` is a `PassReason`: the spike's `payload` did not fit, its cause was `consumed`, or the rule itself had `caused` the spike.
  */
 export interface Passed {
   kind: "passed";
