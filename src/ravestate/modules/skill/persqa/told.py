@@ -29,8 +29,6 @@ _SAID_BACK = {
     "i": "you", "me": "you", "my": "your", "mine": "yours", "myself": "yourself", "am": "are", "'m": "are",
     "we": "you", "our": "your", "us": "you", "ours": "yours",
 }  # fmt: skip
-LEAST_PERSON = -0.15
-"""The least likeness of a name to the names of persons, for a statement about a person."""
 LEAST = 0.73
 """The least similarity of a question and the statement that answers it."""
 _FIT = {
@@ -315,17 +313,8 @@ def _about(reader: Reader, said: nlp.Statement) -> str:
         return ""
     if words and (dated or thing or (said.verb == "be" and object.names)) and not reader.noun(subject):
         return subject.text
-    if reader.noun(object) or reader.noun(subject):
-        return ""
-    owner = subject.owner.name if subject.owner is not None and subject.head in NOUNS else ""  # "Tariq's dad"
-    named = owner or (subject.name if words or not subject.head or subject.head in WORDS["kin"] else "")
-    return (subject.name if words else subject.text) if named and _is_person(reader, named) else ""
-
-
-def _is_person(reader: Reader, name: str) -> bool:
-    """Return whether a name is rather that of a person than of a place or a firm."""
-    places = {entity.label for entity in reader.seen.entities if name in entity.text} & {"LOC", "FAC", "DATE", "NORP"}
-    return not places and likeness(name, NAME) > LEAST_PERSON and bool(value_of(name, TOPICS[NAME], reader.seen))
+    person = subject.names and not subject.head and value_of(subject.text, TOPICS[NAME], reader.seen, sure=False)
+    return subject.text if person and not (reader.noun(object) or reader.noun(subject)) else ""
 
 
 def _retold(reader: Reader, said: nlp.Statement) -> str:
