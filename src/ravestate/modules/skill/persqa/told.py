@@ -146,7 +146,8 @@ def recalled(reader: Reader, told: Iterable[Told], known: Facts) -> list[Told]:
     told, kind = list({one.text: one for one in told if one.text}.values()), reader.seen.question
     for said in reader.seen.statements:
         about = next((phrase for phrase in reversed(said.phrases) if phrase.preposition == "about"), None)
-        if said.question and said.verb in _REMINDING and about and about.person == "other":
+        informing = said.subject.person == "you" and said.verb == "tell" and not (about and about.names)
+        if said.question and said.verb in _REMINDING and about and about.person == "other" and not informing:
             words = [word for word in re.findall(r"\w+", about.text) if word.lower() not in _MINE]
             return [one for one in told if _covers(one, words, known)][-3:]
     asked = next((said for said in reader.seen.statements if said.question and said.subject.person != "you"), None)

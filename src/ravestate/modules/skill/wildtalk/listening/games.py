@@ -33,6 +33,7 @@ THINKING = re.compile(
     re.IGNORECASE,
 )
 """The user needs more time for their turn."""
+_IT = frozenset(("it", "its", "it's", "was"))
 HINT = re.compile(r"\b(?:hint|clue|tip|help me)\b", re.IGNORECASE)
 _MOVING = frozenset(("be", "say", "take", "go", "have", "then", "choose", "pick"))
 """Verbs around a word of word chain: *then I say tiger*."""
@@ -191,6 +192,10 @@ class Turn:
     def _animal(self, game: Game) -> Played | None:
         known, questions = self._shows["animal"]["known"], self._shows["animal"]["questions"]
         if not game.word:  # the agent has given up, and the user names the animal
+            return self._learnt(game)
+        lemmas = self._lemmas()
+        named = any(one.split()[-1] in lemmas for one in known if one != game.word)
+        if named and not self._yes and not _IT.isdisjoint(self._words):  # "no, it's a snake"
             return self._learnt(game)
         if not (self._yes or self._no or self._unsure):
             return None

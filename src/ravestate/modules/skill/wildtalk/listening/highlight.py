@@ -107,7 +107,8 @@ def highlight_in(seen: Analysis, words: Sequence[Word], known: str = "", *, aske
             told *= 1 + (LATER - 1) * place / len(words)
             told *= _weight(tree, noun) * (BEFORE if noun.index < turn else 1.0)
             text = _written(lexicon, echo(tree, phrase))
-            plainly = phrase[0].low in _DEFINITE and not any(word.pos in ("ADJ", "NUM", "ADP") for word in phrase)
+            bare = phrase[phrase[0].pos == "ADP" :]  # "on the telly" says no more than "the telly"
+            plainly = bare[0].low in _DEFINITE and not any(word.pos in ("ADJ", "NUM", "ADP") for word in bare)
             if told >= (KNOWN_LEAST if plainly else LEAST) and text:
                 found.append(Highlight(text, told, noun.index))
     return max(found, key=lambda one: one.information, default=None)

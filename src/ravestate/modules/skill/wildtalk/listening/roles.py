@@ -35,6 +35,7 @@ TURNED = dict(
     )
 )
 """Word of the user → the agent's word for it."""
+_OWNED = ("her ", "his ", "their ", "its ")
 _REPEATABLE = re.compile(r"[\w' ,.’-]+")
 
 
@@ -189,4 +190,5 @@ def _as_being(tree: Tree, phrase: Phrase, kind: str, gender: str, *, mine: bool)
     noun = next((word.low for word in tree.words if word.lemma.lower() == phrase.head), phrase.head)
     text = f"your {noun}" if phrase.owner is not None or (mine and kind == "pet") else f"the {noun}"
     text = " ".join(words) if phrase.owner is not None and len(words) <= 3 else text
+    text = text[:1].lower() + text[1:] if text.lower().startswith(_OWNED) else text  # "Her mother thinks..."
     return Being(text, kind, gender, plural or (phrase.amount or 1) > 1)
