@@ -14,7 +14,7 @@ RIGHT = 0.9
 REJECTED = 0.9
 """The minimum share of held-out performances of unknown movements that are rejected.
 
-It holds twice: for the unknown movements, and for movements that were added after the recogniser was finished."""
+It applies to two sets of unknown movements. One set existed while the recogniser was written, and one was made later."""
 
 
 def test_held_out_performances_are_recognised_and_unknown_movements_rejected() -> None:
@@ -97,7 +97,10 @@ def test_an_activity_is_recognised_despite_a_few_broken_poses(recogniser: Recogn
 
 
 def test_the_starter_set_is_up_to_date(recogniser: Recogniser) -> None:
-    """The tool `starter` made the set from its performances. If they had changed since, the recogniser would miss some."""
+    """The tool `starter` generates performances, and made the set from them.
+
+    If the generator had changed since then, the recogniser would miss some of the performances below.
+    """
     trials = starter.performances(starter.KNOWN, 4, camera.TAUGHT, 77)
     right = [recogniser.recognise_features(pair).name == name for name, pairs in trials.items() for pair in pairs]
     assert sum(right) / len(right) >= 0.95

@@ -86,7 +86,7 @@ def talk(folder: Path, *, redirected: bool, agent: str = AGENT) -> tuple[bytes, 
     seen = b""
     errors = b""
     typed = b""
-    again = 6  # the maximum number of attempts to type the keys, because a suspended prompt can lose them
+    again = 6  # the number of times that keys are typed again, in all: a suspended prompt can lose them
 
     def read() -> bool:
         """Act as the terminal; return whether the program's side is still open."""
@@ -97,7 +97,7 @@ def talk(folder: Path, *, redirected: bool, agent: str = AGENT) -> tuple[bytes, 
             os.write(ours, typed)
         try:
             received = os.read(ours, 4096)
-        except OSError:  # on Unix, the other side of the pseudo-terminal is closed
+        except OSError:  # Linux: the other side of the pseudo-terminal is closed
             return False
         seen += received
         os.write(ours, b"\x1b[1;1R" * received.count(b"\x1b[6n"))

@@ -717,7 +717,7 @@ def test_without_memory_the_conversation_goes_on_and_the_user_hears_of_it_once()
         assert meant(answers(sim, "i live in ulm"), "learned_home")
         assert answers(sim, "where do i live").endswith("you live in Ulm.")
         assert meant(answers(sim, "no, my name is bob"), "renamed")
-        assert sim.failures == []  # no rule fails because another process uses the memory
+        assert sim.failures == []  # missing memory makes no rule fail
 
 
 def test_a_memory_that_cannot_be_opened_is_not_reported_again(caplog: pytest.LogCaptureFixture) -> None:

@@ -17,8 +17,7 @@ SHORTEST = 3
 LONGEST = 5
 """The maximum number of words of a remark."""
 MOST = 8
-"""The maximum number of sentences of an utterance. At the end of a longer utterance, a question counts no more than the
-rest."""
+"""The maximum number of sentences of an utterance with a closing question. *And you?* counts after longer ones, too."""
 LONG = 10
 """The maximum number of words in a statement before *and you?*."""
 
@@ -67,9 +66,9 @@ class Closing:
     returned: bool = False
     """Whether `text` is the full question that the user shortened to *and you?*."""
 
-    def outweighs(self, text: str) -> bool:
-        """Return whether `text` is only in the asides. If so, the agent should answer the closing question instead."""
-        return text not in self.text and any(text in aside for aside in self.asides)
+    def outweighs(self, part: str) -> bool:
+        """Return whether a part of the utterance is only in the asides. Then the closing question should be answered."""
+        return part not in self.text and any(part in aside for aside in self.asides)
 
 
 def closing_of(tree: Tree, sentences: Sequence[str]) -> Closing | None:
@@ -134,7 +133,7 @@ def _requests(words: Sequence[Word]) -> bool:
 
 
 def _is_remark(words: Sequence[Word]) -> bool:
-    """Return whether a sentence only reacts: it is short, and tells nothing about the user or about a thing."""
+    """Return whether a sentence only reacts: it is short, does not mention the user, and states nothing with a verb."""
     words = [word for word in words if word.pos != "PUNCT"]
     if len(words) > LONGEST or not _FIRST.isdisjoint(word.low for word in words):
         return False

@@ -1,7 +1,8 @@
 """The reading of an utterance by a language model, which may replace parts of the module's own analysis.
 
-The server must constrain the model's answer to a JSON schema. So the answer is always a `Reading`. Even so, the model
-may answer the user's question, or leave words out. `Reading.normal` rejects such a reading.
+The server should constrain the model's answer to a JSON schema, so that the answer is a `Reading`. If the server does not,
+the module's own analysis stays. The model may also answer the user's question, or leave words out. `Reading.normal` rejects
+such a reading.
 """
 
 from __future__ import annotations
@@ -112,7 +113,7 @@ class ModelReader:
     """
 
     def __init__(self, backend: Backend, timeout: float) -> None:
-        """Take a language model whose requests have `SCHEMA`.
+        """Take a language model. Its backend must send `SCHEMA` with each request.
 
         Args:
             backend: The language model.

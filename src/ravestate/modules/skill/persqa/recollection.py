@@ -12,7 +12,8 @@ from ravestate.language.reranker import Reranker
 from ravestate.modules import nlp
 
 CLEARLY = 2.0
-"""The least lead of the best sentence over the second best, in logits. The scores themselves differ by question."""
+"""The least lead of the best sentence over the second best, in logits. The lead counts, because some
+questions have higher scores than others."""
 LEAST = -7.0
 """The least score of an answer, in logits. A wrong answer is worse than no answer."""
 LIKELY = 0.4
@@ -64,7 +65,7 @@ def recollect(question: str, sentences: Sequence[str]) -> str:
         return ""
     try:
         scores = _reranker().score(question, known).tolist()
-    except PlatformError:  # without the model, only statements with the same words are found
+    except PlatformError:  # `recalled` in told.py still finds statements with the same words
         return ""
     best, *others = sorted(range(len(known)), key=lambda place: -scores[place])
     answer, bar = known[best], scores[best] - CLEARLY
