@@ -33,7 +33,7 @@ def test_a_rule_that_resigns_gives_its_spike_up_for_both_its_clauses(trace: bool
         assert (ran, sim.read(out)) == (["asks"], "fallback")
 
 
-def test_groups_merge_with_and_without_a_listener_of_the_slot(trace: bool) -> None:
+def test_groups_merge_although_no_rule_listens_to_the_slot(trace: bool) -> None:
     m = rs.Module("m")
     a, b = m.signal("a"), m.signal("b")
     unheard, wanted = m.slot("unheard", 0), m.slot("wanted", 0)

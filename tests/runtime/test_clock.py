@@ -226,6 +226,20 @@ def test_a_task_can_step_a_paused_context() -> None:
     assert asyncio.run(talk()).startswith("answer at 2")
 
 
+def test_a_driven_clock_never_runs_backwards_when_it_starts_again(scene: Scene) -> None:
+    scene.clock.drive(1.0)
+    scene.clock.halt()
+    scene.clock.set(5.0)
+    assert scene.clock.now() == 5.0
+    scene.clock.go()
+    assert scene.clock.now() == 5.0
+    scene.clock.drive(3.0)  # the driver is behind, so the clock waits for it
+    assert scene.clock.now() == 5.0
+    scene.clock.drive(6.0)
+    assert scene.clock.now() == 6.0
+    scene.loop.close()
+
+
 def test_a_driven_clock_advances_only_when_a_rule_sets_it() -> None:
     m = rs.Module("m")
     tick = m.signal("tick", payload=float)

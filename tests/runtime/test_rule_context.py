@@ -288,7 +288,7 @@ def test_only_a_mapping_can_be_written_to_a_collection(scene: Scene, value: obje
 
 
 @pytest.mark.parametrize("payload", [7, 0, "", None, False])
-def test_falsy_payloads_arrive_unchanged(scene: Scene, payload: Any) -> None:
+def test_payloads_arrive_unchanged_even_if_they_are_falsy(scene: Scene, payload: Any) -> None:
     scene.run(lambda ctx: ctx.payload(scene.go))
     assert scene.outcome(payload) is payload or scene.outcome(payload) == payload
 

@@ -1,4 +1,4 @@
-"""Edge routing: the lines between vertices whose coordinates are known, as lists of points."""
+"""Edge routing: the lines between vertices, as lists of points. The height of each vertex (its y) is known."""
 
 from __future__ import annotations
 
@@ -31,7 +31,7 @@ def route(graph: LayeredGraph, middle: Sequence[float]) -> Routed:
     for number in range(len(graph.segments)):
         gaps[graph.layer[graph.ends(number)[0]]].append(number)
     across = [0.0] * len(graph.layer)
-    # segment → the x at which its line leaves the first y, and the x at which its line reaches the second y
+    # segment → the x at which its line leaves the height of its left end, and reaches the height of its right end
     turns = [(0.0, 0.0)] * len(graph.segments)
     x = 0.0
     for layer, numbers in zip(graph.order, gaps, strict=True):

@@ -1,6 +1,7 @@
-"""A bench: first spikes of clauses with two constraints. They wait together for a second spike, their *counterpart*.
+"""A bench. A clause with two constraints takes two spikes. On a bench, first spikes wait for the second, their *counterpart*.
 
-A *half* keeps such first spikes without activations (``halves.py``). ``benches.py`` explains the use of benches.
+The spikes belong to a *half*: a set of constraints for one signal, which keeps their first spikes without activations
+(``halves.py``). ``benches.py`` explains the use of benches.
 """
 
 from __future__ import annotations

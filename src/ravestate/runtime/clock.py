@@ -9,7 +9,10 @@ import asyncio
 
 
 class Clock:
-    """A clock that counts the seconds since a context started, without the time in which the clock was halted."""
+    """A clock that counts the seconds since a context started, without the time in which the clock was halted.
+
+    If another clock drives it, this other clock decides which time counts.
+    """
 
     def __init__(self, loop: asyncio.AbstractEventLoop) -> None:
         self._loop = loop
@@ -39,7 +42,10 @@ class Clock:
         return self._driven is not None
 
     def drive(self, time: float) -> None:
-        """Set the clock forward to `time` (seconds). From now on, only calls of `drive` move the clock."""
+        """Set the clock forward to `time` (seconds). From now on, it no longer follows the loop's time.
+
+        A halted clock keeps its time until `go`, and then jumps to the time to which it was driven meanwhile.
+        """
         self._driven = max(self.now() if self._driven is None else self._driven, time)
         for sleeper, (until, timer) in self._sleepers.items():
             if timer is not None:
@@ -90,12 +96,13 @@ class Clock:
                     _wake(sleeper)
 
     def go(self) -> None:
-        """Start a halted clock again from its present time."""
+        """Start a halted clock again from its present time, or from the later time to which it was driven meanwhile."""
         if self._halted is not None:
-            self._origin = self._loop.time() - self._halted
+            present = self._halted
+            self._origin = self._loop.time() - present
             self._halted = None
             if self._driven is not None:
-                self.drive(self._driven)
+                self.drive(max(self._driven, present))  # `set` may have set the clock beyond its driver
                 return
             for sleeper, (until, _) in self._sleepers.items():
                 timer = self._loop.call_at(self.on_loop(until), _wake, sleeper)

@@ -64,7 +64,7 @@ class EagerTask:
         self._clean = variables
         self._renew()
         waiting: Any = host(self)
-        waiting.send(None)  # so that a cancellation reaches the host, even before the task's first step
+        waiting.send(None)  # start the generator: a cancellation before the task's first step is then raised in it
         self.task: asyncio.Task[Any] = loop.create_task(main(waiting), context=self._context)
 
     def _renew(self) -> None:

@@ -338,7 +338,7 @@ class Runner:
         return bool(dues)
 
     def resume(self) -> None:
-        """Start a halted clock again from its present time."""
+        """Start a halted clock again from its present time, or from the later time to which it was driven meanwhile."""
         if self.clock.halted:
             self.clock.go()
             self._timer.clear()

@@ -101,7 +101,7 @@ async def think(ctx: rs.RuleContext) -> None:
 
 @thinker.rule(when=rawio.output.changed.detached(), emits=rawio.typing)
 async def take_note(ctx: rs.RuleContext) -> None:
-    """Do other work after the answer."""
+    """Do other work after each output."""
     await ctx.sleep(60.0)
 
 

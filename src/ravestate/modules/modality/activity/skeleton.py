@@ -62,11 +62,13 @@ class Skeleton:
 
 
 def skeleton_of(poses: Sequence[Pose]) -> Skeleton | None:
-    """Return the normalised movement of some poses; None if they are too few, or the shoulders are not visible.
+    """Return the normalised movement of some poses; None if they are too few or too short, or the shoulders are not
+    visible.
 
-    The result does not depend on the camera's distance, side and direction. The origin moves with the body, and the
-    unit is the length of the torso. The function turns the body about the vertical axis until its shoulders are, on
-    average, parallel to the picture.
+    The result does not depend on how far away the camera is, or on the side from which it looks. The camera must be
+    upright and level. The origin moves with the body, and the
+    unit is the length of the torso. The function turns the body about the vertical axis until its shoulders (and
+    its hips, if visible) are, on average, parallel to the picture.
 
     Args:
         poses: The poses of one body, in the order of their times.
@@ -112,7 +114,7 @@ def _resampled(
 ) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
     """Return the places of the landmarks (T, 33, 3) at `RATE`, and the share of frames in which each is visible (33,).
 
-    While a landmark is invisible, its place is interpolated linearly.
+    While a landmark is invisible, its place is interpolated linearly. The places are smoothed. Unused landmarks get 0.
     """
     import numpy as np
 

@@ -2,7 +2,7 @@
 
 The parse gives the wrong value and the right value. The wrong value tells which fact the user corrects: a known fact about
 them or their relatives, no matter when it was mentioned. Without a wrong value, users correct the fact that was mentioned
-last. If no fact was mentioned lately, they correct the only known fact of that kind.
+last. If that fact does not suit the right value, they correct the only known fact that does.
 """
 
 from __future__ import annotations
@@ -26,7 +26,7 @@ from .wording import Facts, among, mentioned, same
 _SUBJECTS = frozenset(["it", "that", "this", "he", "she", "they", "i"])
 _CONTENT = frozenset(["NOUN", "PROPN", "NUM", "ADJ", "VERB", "X"])
 _PLAIN: dict[str, float] = {"place": 0.0, "number": 0.0, "organisation": 0.5, "work": 0.5}
-"""Kind whose values alone tell which fact is meant → the least `likeness` of such a value to this kind."""
+"""Kind for which a bare value shows which fact is meant (*no, Leipzig*) → the `likeness` that the value must exceed."""
 _MEANING = frozenset(["meant", "mean", "said"])
 _POINTING = frozenset(["that", "this", "these", "those"])
 
@@ -53,8 +53,8 @@ def corrected_in(
         text: The utterance, with its short forms written out.
         talk: The state of the conversation.
         told: The known free statements.
-        read: The values that other words of the utterance already give to a topic: *I live in Leipzig, not Leeds*.
-        asked: Whether a question of the agent is open. If so, a correction must name the wrong value.
+        read: The values that the utterance states as facts anyway: Leipzig, in *I live in Leipzig, not Leeds*.
+        asked: Whether a question of the agent is open. If so, a correction must name the wrong value, or spell the right one.
     """
     seen, recent = reader.seen, talk.correctable
     if not recent or talk.age:  # a fact of the user's last utterance takes precedence over the agent's last words
@@ -117,7 +117,7 @@ def _is_about(seen: nlp.Analysis, topic: str, recent: str) -> bool:
 
 
 def _may_retell(seen: nlp.Analysis, one: Told, wrong: str) -> bool:
-    """Return whether a contrast may correct a free statement: the contrast has the statement's verb, or no verb."""
+    """Return whether a contrast may correct a free statement: its clauses have the statement's subject, or a pronoun."""
     if not same(one.object, wrong):
         return False
     about = {one.subject.lower(), one.who.lower(), *_SUBJECTS}
@@ -130,7 +130,7 @@ def _may_retell(seen: nlp.Analysis, one: Told, wrong: str) -> bool:
 def _opposed(known: Facts, rest: str, recent: str, latest: Sequence[str], seen: nlp.Analysis, *, answers: bool) -> str:
     """Return the topic that words such as *no, Leipzig* correct; empty if this is not clear.
 
-    It is the topic mentioned last, or else the only known topic of that kind. If the agent's last words were a question
+    It is the topic mentioned last, or else the only known topic that the value suits. If the agent's last words were a question
     (`answers`), the words may answer it, so only the topic mentioned last counts.
     """
     values = {
