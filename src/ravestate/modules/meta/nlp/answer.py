@@ -47,10 +47,15 @@ _TURN = re.compile(r"\b(?:but|although|though|however)\b")
 _HEDGE = re.compile(r"\b(?:probably|prob|maybe|perhaps|possibly|i guess|i suppose)\b(?! (?!yes|no|so|not)\w)")
 """A hedge before an answer or at the end of a part. In *maybe he is at home*, it does not count: no answer follows."""
 _WEAKENING = re.compile(
-    r"\b(?:a (?:bit|little)|sort of|kinda|kind of|in a way|on the whole|in (?:principle|theory)|as far as|could|might|looks like|seems|mostly"
-    r"|reasonably|tolerably|more or less|if|unless|once|after|at least|hope|provided|perhaps|maybe)\b"
+    r"(?:just |only )?(?:a (?:bit|little)|sort of|kinda|kind of|in a way|on the whole|in (?:principle|theory)|as far as i know|i might"
+    r"|(?:it )?looks like it|it seems so|more or less|reasonably|tolerably|mostly|i hope(?: so)?|at least i hope so|perhaps|maybe)\b(?! you)"
 )
-"""Words beside a *yes* that make it weak: *in a way, yes*, *yes, if nobody else is listening*."""
+"""Beginnings of a part beside a *yes* that make it weak: *in a way, yes*, *yes, perhaps a small one*."""
+_PLAINLY = re.compile(r"yes|yeah|yep|no|nope|nah")
+_UNFIT = re.compile(
+    r"\b(?:not|never|no|nobody|none|nothing|don't|who|what|when|where|why|how|which|said|told|he|she|they|tell|give|do|please)\b"
+)
+"""Words of a part that no answer follows: it denies, asks, reports or orders something."""
 _FILLERS = word_set("well oh ah uh um er hm hmm mm honestly actually so and then please sorry frankly ha haha")
 _COURTESIES = ("thanks", "thank you", "many thanks")
 """Parts before an answer: *thank you, but no*."""
@@ -110,17 +115,13 @@ def _score(text: str) -> int | None:
     parts = list(_parts(text))
     for (part, marks), (after, _) in zip_longest(parts, parts[1:], fillvalue=("", "")):
         score = _score_of_part(part, asks="?" in marks)
-        weak = weak or (_explicit(part) is None and _WEAKENING.search(part) is not None)
+        weak = weak or (_explicit(part) is None and _WEAKENING.match(part) is not None)
         if (hedge := _HEDGE.search(part)) is not None:
             hedged = True
             if found is not None and hedge[0] == part:
                 continue
         if not found:
-            if (
-                score is None
-                and len(part.split()) > _LEAD
-                and (_explicit(after) is None or not marks.startswith((",", ":")))
-            ):
+            if score is None and len(part.split()) > _LEAD and not _answers_after(part, marks, after):
                 break
             found = found if score is None else score
             opened = _explicit(part) is not None
@@ -131,10 +132,20 @@ def _score(text: str) -> int | None:
             return found if whole is None else whole
         elif score:
             found = max(found, score, key=abs)
-        echoes = found is None and "?" in marks and len(part.split()) <= _LEAD  # "what? no!"
+        echoes = (
+            found is None and "?" in marks and len(part.split()) <= _LEAD and _PLAINLY.fullmatch(after)
+        )  # "what? no!"
         if not echoes and not {*".!?…\n"}.isdisjoint(marks):
             break
     return found // abs(found) if found and (hedged or (weak and found > 0)) else found
+
+
+def _answers_after(part: str, marks: str, after: str) -> bool:
+    """Return whether an answer follows a long part that is none: *after my coffee, yes*.
+
+    *Ok* and the like are no such answers, because they often only end a sentence: *you must not do that, ok*.
+    """
+    return marks in (",", ":") and _PLAINLY.fullmatch(after) is not None and _UNFIT.search(part) is None
 
 
 def _parts(text: str) -> Iterator[tuple[str, str]]:

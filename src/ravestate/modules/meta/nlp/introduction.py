@@ -29,7 +29,7 @@ _FRAMES = [
     re.compile(frame, re.IGNORECASE)
     for frame in (
         rf"{_OPENERS}(?P<sure>my name(?: is|['’]s)|(?:you (?:can|may) )?call me|i(?: am|['’]m) called) {_NAME.pattern}{_CLOSERS}{_BESIDE}",
-        rf"{_OPENERS}(?P<sure>name['’]s|(?-i:[Mm]y name(?= [A-Z]))|(?-i:[Yy]ou (?:can|may) say(?= [A-Z]))) {_NAME.pattern}{_CLOSERS}{_BESIDE}",
+        rf"{_OPENERS}(?P<sure>name['’]s|(?-i:[Mm]y name(?= [A-Z]))) {_NAME.pattern}{_CLOSERS}{_BESIDE}",
         rf"{_OPENERS}(?:(?P<pointing>{_IT_IS})(?: me)?|i(?: am|['’]m)) {_NAME.pattern}{_CLOSERS}{_BESIDE}",
         rf"{_OPENERS}{_NAME.pattern} (?:again )?here(?: again)?{_BESIDE}",
     )
@@ -63,7 +63,12 @@ class Introduction:
         Unless the introduction is `sure`, the name must be among `persons`.
         """
         known = self.sure or self.name.lower() in map(str.lower, persons)
-        if not known or " " in self.name or len(re.findall(r"\w+", self.rest)) < SHORTEST:
+        if (
+            not known
+            or " " in self.name
+            or "my name" in self.rest.lower()
+            or len(re.findall(r"\w+", self.rest)) < SHORTEST
+        ):
             return None
         return replace(self, name=self.name[:1].upper() + self.name[1:])
 

@@ -30,7 +30,7 @@ _STUDIES = re.compile(
     r"(?<!\bmy )(?<!\bour )(?<!\bhis )(?<!\bher )(?<!\btheir )(?<!\byour )(?<!\bthe )(?<!\bof )(?<!\bfor )(?<!\bcase )"
     r"(?<=[a-z] )studies(?= (?!(?:are|were|have|show|suggest|say|find|and|on|of|is|was)\b)\w)"
 )
-_NO_WAIT = re.compile(r"\bno(?= wait[, ]+(?!for\b|to\b|until\b))", re.IGNORECASE)
+_NO_WAIT = re.compile(r"(?:^|(?<=[.!?,;] ))no(?= wait,)", re.IGNORECASE)
 """The *no* of *no wait, my name is Alice*: the parser would take it for a negation."""
 
 

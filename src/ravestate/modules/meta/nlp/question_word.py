@@ -99,9 +99,10 @@ def kind_at(words: Sequence[Word], index: int) -> QuestionWord | None:
         if after == "for":
             return QuestionWord.REASON
         for other in rest:
-            if other.pos in ("ADJ", "NUM"):
+            time = _CLASS_OF.get(other.lemma.lower()) is QuestionWord.TIME
+            if other.pos in ("ADJ", "NUM") or (other.dep == "compound" and not time):  # "what room temperature"
                 continue
-            if (words[index - 1].low if index else "", other.low) in (("in", "way"), ("by", "means")):
+            if index and (words[index - 1].low, other.low) == ("in", "way"):
                 return QuestionWord.FORM
             if other.pos in ("NOUN", "PROPN", "VERB"):  # without punctuation, the tagger takes some nouns for verbs
                 kind = _CLASS_OF.get(other.lemma.lower(), kind)

@@ -21,6 +21,8 @@ LEAST = 0.5
 """The least confidence that a question needs to belong to a topic."""
 WORDS = 20
 """The maximum number of words in a question about the agent."""
+BRIEF = 5
+"""The maximum number of words of an indirect question that does not mention the agent: *do you know what time it is*."""
 SENTENCES = 4
 """The maximum number of sentences that are considered."""
 _QUESTION_WORD = re.compile(r"(?<=\s)(?:who|whom|whose|what|which|where|when|why|how|if|whether)\b", re.IGNORECASE)
@@ -37,6 +39,7 @@ _TAG = re.compile(
 _OPENERS = re.compile(r"^(?:(?:so|and|well|but|hey|ok|okay|oh|wow|then) )+(?=\S+ \S)")
 _SHORTENED = {"any": "do you have any", "got": "have you got", "have": "do you have", "ever": "have you ever"}
 """The first word of a question that leaves out its verb or its subject → the words that it stands for."""
+_YOU = frozenset(["you", "your", "yours", "yourself"])
 _INVERTED = frozenset(["are", "can", "were", "will", "would", "could", "did", "must", "should"])
 
 
@@ -136,7 +139,9 @@ def _readings(sentence: str, *, question: bool) -> Iterator[str]:
     if not question:
         return
     if (found := _QUESTION_WORD.search(sentence)) is not None:
-        yield sentence[found.start() :]
+        asked, before = plain(sentence[found.start() :]).split(), plain(sentence[: found.start()]).split()
+        if len(asked) <= BRIEF or "you" not in before or not _YOU.isdisjoint(asked):
+            yield sentence[found.start() :]  # not for "do you have any idea what teenagers like to do these days"
     if turned:
         yield whole
 

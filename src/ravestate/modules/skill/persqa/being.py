@@ -71,8 +71,9 @@ def being_in(reader: Utterance, said: nlp.Statement) -> Iterator[Link]:
 
 
 def _is_word(word: str) -> bool:
+    """Return whether the lexicon has a word: *gardening*, but not *astronoming*."""
     lexicon = loaded_lexicon()
-    return lexicon is None or not lexicon.rare(word)
+    return lexicon is None or lexicon.count(word) > 0
 
 
 def _country(text: str, whole: str) -> str:

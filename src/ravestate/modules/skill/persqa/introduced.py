@@ -6,7 +6,6 @@ the named entities or the examples decide. The parser and the examples know few 
 
 from __future__ import annotations
 
-import re
 from typing import TYPE_CHECKING
 
 from ravestate.language.lexicon import loaded_lexicon
@@ -15,7 +14,7 @@ from ravestate.modules.meta.nlp.introduction import introductions_in
 from .kinds import is_remark, likeness
 from .topics import NAME, NATIONS, TOPICS
 from .utterance import Utterance
-from .values import number_in, value_of
+from .values import value_of
 from .wording import among, same
 
 if TYPE_CHECKING:
@@ -27,14 +26,6 @@ def introduced_in(reader: Utterance) -> str:
     for one in introductions_in(reader.tree):
         another = one.pointing and (one.late or _means_another(reader, one.name))
         if not another and (name := given_name(one.name, reader.seen)):
-            return name
-    pieces = [piece.strip() for piece in re.split(r"[,.!?]+\s*", reader.tree.text) if piece.strip()]
-    for before, piece, after in zip(["", *pieces], pieces, [*pieces[1:], ""], strict=False):
-        aged = number_in(after) if len(pieces) > 1 else ""  # "Trev, 52"
-        answers = (
-            reader.asked == NAME and piece[:1].isupper() and piece == pieces[-1] and before
-        )  # "Okay, fine. Marisol."
-        if (aged or answers) and " " not in piece and (name := given_name(piece, reader.seen)):
             return name
     return ""
 

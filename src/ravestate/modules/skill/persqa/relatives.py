@@ -57,7 +57,10 @@ def named_in(reader: Utterance) -> Iterator[tuple[str, tuple[str, ...]]]:
         named = me or {"'s"} & set(passed[:own]) or {"name", "names", "called", "named"} & set(passed)
         if {one.pos for one in first} == {"PROPN"}:  # "my sister Rosa; a dog, Rex, and a cat, Misty"
             named = named or (not passed and before.low in _OWN)
-            named = named or (passed in ([","], [":"]) and (word.tag == "NNS" or before.low in ("a", "an", *_OWN)))
+            capital = first[0].text[:1].isupper() or reader.tree.text.islower()  # "the food of my mother, feijoada"
+            named = named or (
+                passed in ([","], [":"]) and capital and (word.tag == "NNS" or before.low in ("a", "an", *_OWN))
+            )
         if named and not is_former(f"{words[max(0, before.index - 1)].low} {before.low} {passed[:1]}"):
             listed = _listed(words[first[0].index :]) if word.tag == "NNS" else _joined(reader.tree, first[0])
             runs = (_run(reader, one) for one in dict.fromkeys((*first, *listed)))

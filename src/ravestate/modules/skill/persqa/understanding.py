@@ -102,6 +102,10 @@ def understand(
     return replace(meaning, busy=busy, **noted)
 
 
+_REFUSES = re.compile(r"\b(?:not|never|n't|do ?nt|don['’]t|or no)\b", re.IGNORECASE)
+"""Words with which an utterance never confirms a deletion."""
+
+
 class _Hearing:
     def __init__(
         self, seen: nlp.Analysis, talk: Talk, known: Facts, now: float, within: float, told: tuple[Told, ...]
@@ -128,8 +132,13 @@ class _Hearing:
             return wish
         if topic == FORGET:
             yesno = seen.yesno if self.fresh else None  # a "yes" to something else must not delete anything
+            if seen.question is not None or _REFUSES.search(self.text):
+                yesno = None if yesno and yesno.yes else yesno  # deletion cannot be undone
             no = yesno and (yesno.no or yesno.unsure)
-            return Meaning("forget_yes" if yesno and yesno.yes else "forget_no" if no else "nothing", leave=self.leave)
+            if (yesno and (yesno.yes or no)) or not asks:
+                kind = "forget_yes" if yesno and yesno.yes else "forget_no" if no else "nothing"
+                return Meaning(kind, leave=self.leave)
+            topic = ""  # "what's my name?" is no answer
         if (
             self.waits
             and self.pending
@@ -148,7 +157,7 @@ class _Hearing:
             inquiry = self.inquiry()
             if self.talk.words and asks_to_repeat(seen):
                 return Meaning("asked_words", facts=inquiry.facts if inquiry else ())
-            if inquiry and inquiry.facts[0].topic in topics:  # "my name is Ada. What is my name?"
+            if inquiry and inquiry.facts[0].topic == NAME and NAME in topics:  # "my name is Ada. What is my name?"
                 asks, inquiry = False, None
             if inquiry and self.is_known(inquiry.facts[0].topic):
                 return inquiry

@@ -113,10 +113,13 @@ class Utterance:
         return min(verbs, key=lambda word: word.pos not in ("VERB", "AUX"), default=None)
 
     def is_denied(self, said: nlp.Statement) -> bool:
-        """Return whether a clause above a statement denies it: *it's not like I left Bosch*."""
+        """Return whether a clause above a statement denies it: *it's not like I left*, *it's not true that I left*."""
         verb = self.verb(said)
-        above = self.tree.head(verb) if verb is not None and verb.dep in ("advcl", "ccomp", "acl") else None
-        return above is not None and above.lemma in ("be", "'s") and bool(self.tree.children(above, "neg"))
+        marks = [] if verb is None else [word.low for word in self.tree.children(verb, "mark")]
+        if verb is None or verb.dep not in ("advcl", "ccomp", "acl") or not {"like", "that"}.intersection(marks):
+            return False
+        above = next((word for word in self.tree.ancestors(verb) if word.lemma in ("be", "'s")), None)
+        return above is not None and bool(self.tree.children(above, "neg"))
 
     def written(self, phrase: Phrase) -> str:
         """Return a phrase with its article, as in the utterance."""

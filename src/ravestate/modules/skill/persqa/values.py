@@ -53,7 +53,7 @@ def value_of(text: str, topic: Topic, seen: nlp.Analysis, *, sure: bool = True) 
         return None
     if kind in ("work", "subject") and any(word.low == words[0] and word.pos == "ADP" for word in seen.tree.words):
         return None  # "between jobs"
-    if kind in ("name", "people") and any(w.low == words[0] and w.pos in ("ADP", "SCONJ") for w in seen.tree.words):
+    if kind in ("name", "people") and any(w.text == words[0] and w.pos in ("ADP", "SCONJ") for w in seen.tree.words):
         return None  # "it's about volcanoes"
     if kind != "name" and (_DEICTIC if kind in ("activity", "thing") else _ANYTHING).match(text):
         return None

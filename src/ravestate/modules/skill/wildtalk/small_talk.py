@@ -181,7 +181,8 @@ def up_to_date(ctx: rs.RuleContext, text: str) -> State:
     if words and words[-1:] != list(state.said[-1:]):  # another module has answered since
         asked = Pending(words[-1]) if words[-1].endswith("?") else None
         game = None if state.game is None else state.game.beside(words[-1])
-        state = replace(state.having_said(words[-1], words[-1]), pending=asked, moment="", game=game)
+        thread = "" if asked else state.thread  # "yes" now answers the other module's question
+        state = replace(state.having_said(words[-1], words[-1]), pending=asked, moment="", thread=thread, game=game)
     return state
 
 

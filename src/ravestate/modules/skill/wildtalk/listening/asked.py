@@ -47,6 +47,11 @@ BY_MOVE = {"advice": "how_to", "opinion": "you_think"}
 """Move → the kind of a question, if the classifier finds no kind."""
 LEAST_WRAPPED = 4
 """The minimum number of words of a question that begins with *do you think*, including these words."""
+_STATING = word_set("is are was were does did do has have")
+_PERSONAL = word_set("i we you it")
+_TIPS = word_set("tip tips advice suggestion suggestions")
+_OFFERED = _TIPS | word_set("idea ideas clue")
+"""Nouns for which a user asks the agent, as in *do you have any idea*: the question is not about the agent."""
 _FUTURE = word_set("will wo 'll going gonna would might ever still soon tomorrow")
 """Words of a question about the future."""
 BRIEF = 4
@@ -56,7 +61,7 @@ CALM = ("fact", "why", "about_you")
 MANY = {"two": 2, "three": 3, "four": 4, "five": 5}
 _SAY = re.compile(r"\b(?:say|repeat(?: after me)?)\b[,:]? *(?:the words? |it |something |with me )?[\"']?([\w' ]{1,30}?)[\"']?"
                   r"(?: please| to .*| for .*| just .*|[.!?,].*)?$", re.IGNORECASE)  # fmt: skip
-_TIMES_SAID = re.compile(r" (?:(\w+) times|twice)\b", re.IGNORECASE)
+_TIMES_SAID = re.compile(r" (?:(?:an? )?(\w+) times|twice)\b", re.IGNORECASE)
 """The number of times that the agent is to say words; at most five times."""
 _CUT = ("VERB", "AUX", "ADP", "SCONJ", "PRON", "PUNCT", "INTJ")
 _LIKED = word_set("better nicer worse more rather prettier")
@@ -129,6 +134,7 @@ def asked_in(
     """
     words = words_of(seen.tree, asking)
     wrapped = len(words) > LEAST_WRAPPED and wraps(words[:4])
+    knowing = wrapped and words[2].lemma.lower() in ("know", "tell")  # "do you know when it opens?"
     words = words[3:] if wrapped else words
     options = options_in(seen.tree, words)
     least = SURE if asking else ORDERED if request else UNASKED
@@ -148,8 +154,15 @@ def asked_in(
         kind = "fact"  # "which is heavier, gold or lead?"
     plainly = asking and words and (asking.endswith("?") or words[0].low in {*QUESTION_WORDS, *AUXILIARIES})
     if asking and wrapped and kind in ("", "about_you", "predict"):  # "do you think that they will be angry?"
-        kind = "predict" if any(word.low in _FUTURE for word in words) else "you_think"
-    if plainly and kind in ("", "fact") and _asks_agent(words):
+        kind = "fact" if knowing else "predict" if any(word.low in _FUTURE for word in words) else "you_think"
+    low = [word.low for word in words]
+    stated = bool(_STATING.intersection(low[:1])) and _PERSONAL.isdisjoint(low[1:2]) and _LIKED.isdisjoint(low)
+    if kind == "choose" and options and stated:
+        kind = "fact"  # "is my data on a disk or in the cloud?"
+    offered = not _OFFERED.isdisjoint(low) and not {*AUXILIARIES, "any"}.isdisjoint(low[:1])
+    if asking and kind in ("", "fact", "about_you") and offered:
+        kind = "fact" if "how" not in low and not _TIPS & set(low) else "how_to"  # "do you have a tip for my nerves?"
+    if plainly and kind in ("", "fact") and _asks_agent(words) and _OFFERED.isdisjoint(low):
         kind = "would_you" if words[0].low in ("would", "could") else "about_you"
     if plainly and not kind:
         kind = BY_MOVE.get(moves[0] if moves else "", "")
@@ -168,7 +181,7 @@ def asked_in(
         "first": options[0] if options else "",
         "second": options[1] if options else "",
         "about": _named(seen, words) or about(phrases, seen.tree, words),
-        "word": _word(seen),
+        "word": _word(seen) if kind in WORDING else "",
         "last": last,
         "short": re.split(r"(?<=[.!?]) |, (?=and|but|or|so)", last)[0].rstrip(",") if last else "",
         "picked": _picked(phrases, words, 0 if kind == "favourite" else len(state.said)),
@@ -289,12 +302,13 @@ def _until(words: Sequence[Word], ends: Sequence[str]) -> list[Word]:
 def _word(seen: Analysis) -> str:
     """Return the words that the agent is asked to say, as often as the user wants: *say "boo" three times*."""
     text = seen.normal.text
-    times = _TIMES_SAID.search(text)
-    match = _SAY.search(text[: times.start()] if times else text)
+    match = _SAY.search(_TIMES_SAID.sub("", text))
     said = match[1].strip() if match else ""
     own = {word.lower() for word in said.split()} & {"my", "me", "your", "that", "it", "this"}
     rude = "insult" in seen.acts or SORROWS & set(seen.feelings)
-    many = MANY.get(times[1].lower(), 2 if times[0].strip().lower() == "twice" else MANY["five"]) if times else 1
+    times = _TIMES_SAID.search(text)
+    number = times[1].lower() if times and times[1] else "two"
+    many = MANY.get(number, MANY["five"]) if times else 1
     return "" if own or rude or not said or len(said.split()) > 4 else ", ".join([said] * many)
 
 

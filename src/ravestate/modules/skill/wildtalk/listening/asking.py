@@ -22,6 +22,8 @@ _AMAZED = re.compile(r"\b(?:can|could|would) you (?:imagine|believe)\b(?: (?:tha
 
 ORDERS = frozenset(("tell_me", "ask_me", "write", "pick", "recommend", "how_to", "say_word"))
 """Kinds of requests (asks.yaml). After another sentence, such a request is the point of the utterance."""
+FELT = 0.8
+"""The minimum confidence in a feeling that takes precedence over such a request."""
 ORDERED = 0.8
 """The minimum confidence in such a request."""
 
@@ -33,8 +35,8 @@ def asking_sentence(seen: Analysis) -> str:
 
 def _order_in(seen: Analysis) -> str:
     """Return the request at the end of an utterance: *I'm on a night shift. Tell me something interesting.*"""
-    if len(seen.sentences) < 2:
-        return ""
+    if len(seen.sentences) < 2 or any(one.score >= FELT for one in seen.feelings.values()):
+        return ""  # "I got the job! Recommend a restaurant."
     last = seen.sentences[-1]
     return (
         last

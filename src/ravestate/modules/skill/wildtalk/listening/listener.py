@@ -139,7 +139,8 @@ class Listener:
 
     def knows(self, seen: Analysis, *, roughly: bool = False) -> bool:
         """Return whether the bank has a reply that probably suits; with `roughly`, by a fast estimate."""
-        if is_crisis(seen.normal.text) or "forget" in plain(seen.text):
+        said = f" {plain(seen.text)} "
+        if is_crisis(seen.normal.text) or " forget" in said or " my name " in said:  # other modules answer
             return False
         near = near_in(self._phrases, seen, "", State(), None, roughly=roughly)
         light = bool(near) and near[0].moment.tone != "sad" and is_dark(seen, near)
@@ -157,7 +158,7 @@ class Listener:
         said = self._mended(heard, state, chance) or self._say(hearing, state, chance)
         game = None if state.game is None or is_leaving(heard.text) else state.game.beside(said.text)
         ground = (hearing.taken.told.echo if hearing.taken else "") or state.ground
-        now = replace(said.state, before=heard.text, ground=ground, game=game, options=hearing.options or state.options)
+        now = replace(said.state, before=heard.text, ground=ground, game=game, options=hearing.options)
         return replace(said, state=now)
 
     def overhear(self, seen: Analysis, focus: Being | None) -> Overheard:

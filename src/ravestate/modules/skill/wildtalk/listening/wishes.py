@@ -40,7 +40,7 @@ _OFFERS = re.compile(
     r"|\b(?:don't|didn't|do not|did not|never) (?:\w+ )?(?:ask|asked|want|wanted|need)\b(?!.*\b(?:but|instead|rather)\b)"
     r"|\b(?:tell|ask|show|sing|read) you\b|\b(?:do|would) you (?:like|want) to hear\b|\bto hear (?:my|mine)\b|\bask you\b"
     r"|\b(?:is|was|'s|are|were|been)(?: \w+)? an? (?:\w+ )?{noun}|\b(?:the|that|this|those|my|your|his|her|their|our|same"
-    r"|no|what a|(?<!let)(?<!today)'s) (?:\w+ )?{noun}|\byou (?:told|said|sang)\b|\byou like {noun}".replace("{noun}", r"(?:joke|stor|song|riddle|tale|pun)")
+    r"|no|what a|(?<!let)(?<!today)(?<!it)'s) (?:\w+ )?{noun}|\byou (?:told|said|sang)\b|\byou like {noun}".replace("{noun}", r"(?:joke|stor|song|riddle|tale|pun)")
 )  # fmt: skip
 """The user offers a joke or a story, or speaks about a particular one: *I know a joke*, *was that a joke?*."""
 _ANOTHER = re.compile(
