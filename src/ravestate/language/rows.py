@@ -50,7 +50,10 @@ class Rows:
         return rows
 
     def products(self, vectors: NDArray[np.float32]) -> NDArray[np.float32]:
-        """Return the products with `vectors`, of shape (k, d), as an array of shape (k, n). For vectors of length 1, these are cosines."""
+        """Return the products with `vectors`, of shape (k, d), as an array of shape (k, n).
+
+        For vectors of length 1, these are cosines.
+        """
         import numpy as np
 
         found = np.empty((len(vectors), len(self)), dtype=np.float32)

@@ -127,9 +127,7 @@ def _readings(sentence: str, *, question: bool) -> Iterator[str]:
     """
     whole = _in_full(_POLITE.sub("tell me", _OPENERS.sub("", plain(sentence))))
     turned = question and whole != plain(sentence)
-    if turned and plain(sentence).startswith(
-        "you "
-    ):  # "you like tea" resembles "what do you like" more than "do you like tea"
+    if turned and plain(sentence).startswith("you "):  # "you like tea" would resemble "what do you like"
         yield whole
         return
     yield sentence

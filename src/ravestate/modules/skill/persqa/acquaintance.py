@@ -89,8 +89,8 @@ class Acquaintance:
     def renamed(self, graph: ontology.Graph, name: str) -> Acquaintance:
         """Return the user under another name, because the agent misunderstood the name at first.
 
-        If this conversation created the person, rename them, or use the person of that name in memory. If the person comes from memory, restore their old facts;
-        the facts of this conversation then go to a person with the new name.
+        If this conversation created the person, rename them, or use the person of that name in memory. If the person
+        comes from memory, restore their old facts; the facts of this conversation then go to a person with the new name.
         """
         assert self.who is not None  # the agent understood their name
         person = ontology.Node("Person", {NAME: name})

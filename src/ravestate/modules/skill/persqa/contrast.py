@@ -54,7 +54,8 @@ def corrected_in(
         talk: The state of the conversation.
         told: The known free statements.
         read: The values that the utterance states as facts anyway: Leipzig, in *I live in Leipzig, not Leeds*.
-        asked: Whether a question of the agent is open. If so, a correction must name the wrong value, or spell the right one.
+        asked: Whether a question of the agent is open. If so, a correction must name the wrong value, or spell the
+            right one.
     """
     seen, recent = reader.seen, talk.correctable
     if not recent or talk.age:  # a fact of the user's last utterance takes precedence over the agent's last words
@@ -130,8 +131,8 @@ def _may_retell(seen: nlp.Analysis, one: Told, wrong: str) -> bool:
 def _opposed(known: Facts, rest: str, recent: str, latest: Sequence[str], seen: nlp.Analysis, *, answers: bool) -> str:
     """Return the topic that words such as *no, Leipzig* correct; empty if this is not clear.
 
-    It is the topic mentioned last, or else the only known topic that the value suits. If the agent's last words were a question
-    (`answers`), the words may answer it, so only the topic mentioned last counts.
+    It is the topic mentioned last, or else the only known topic that the value suits. If the agent's last words were a
+    question (`answers`), the words may answer it, so only the topic mentioned last counts.
     """
     values = {
         topic: [one for fact in answer(rest, topic, seen) for one in fact.values] for topic in {*known, recent} - {""}

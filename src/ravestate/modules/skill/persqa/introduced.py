@@ -12,7 +12,7 @@ from ravestate.language.lexicon import loaded_lexicon
 from ravestate.modules.meta.nlp.introduction import introductions_in
 
 from .kinds import is_remark, likeness
-from .topics import NAME, NATIONS, TOPICS
+from .topics import NAME, TOPICS
 from .utterance import Utterance
 from .values import value_of
 from .wording import among, same
@@ -35,8 +35,6 @@ def given_name(words: str, seen: nlp.Analysis) -> str:
     first, *others = words.split() or [""]
     if not first or any(word.islower() and not _is_foreign(word) for word in others):
         return ""  # "Hamburg calling"
-    if all(part.lower() in NATIONS for part in words.split("-")):
-        return ""
     tags = {word.pos for word in seen.tree.words if word.text in words.split()}
     persons = {entity.label for entity in seen.entities if first in entity.text} <= {"PERSON", "ORG"}
     sure = _is_foreign(first) and not is_remark(words)

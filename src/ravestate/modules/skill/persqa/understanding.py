@@ -102,7 +102,7 @@ def understand(
     return replace(meaning, busy=busy, **noted)
 
 
-_REFUSES = re.compile(r"\b(?:not|never|n't|do ?nt|don['’]t|or no)\b", re.IGNORECASE)
+_REFUSES = re.compile(r"\b(?:not|never|do ?nt|or no)\b|n['’]t\b", re.IGNORECASE)
 """Words with which an utterance never confirms a deletion."""
 
 

@@ -1,6 +1,7 @@
 """The kind of a question or request (language/examples/asks.yaml), its area of life, and the words that it names.
 
-The listener looks up an answer by kind and area (areas.yaml), or else by kind alone (asked.yaml). The words come from the
+The listener looks up an answer by kind and area (areas.yaml, mostly recommendations and the agent's own tastes), or else
+by kind alone (asked.yaml). The words come from the
 parse: the options of a choice, the thing that the question is about, and question words such as *how many eggs*.
 """
 
@@ -29,7 +30,6 @@ SURE, ORDERED, UNASKED = 0.4, 0.6, 0.8
 """The minimum confidence in the kind of a question, of an order, and of any other utterance."""
 ALIKE: Mapping[str, tuple[str, ...]] = {
     "choose": ("recommend",),
-    "you_think": ("you_think", "should", "worth"),
     "would_you": ("would_you", "favourite"),
 }
 """Kind → the classes of an area whose answers suit it, the best first. By default, only the class of the kind itself."""
