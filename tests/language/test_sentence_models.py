@@ -61,7 +61,7 @@ def test_many_threads_load_a_model_once(monkeypatch: pytest.MonkeyPatch, tmp_pat
     made: list[Path] = []
     all_started = threading.Event()
 
-    def make(folder: Path) -> object:
+    def make(folder: Path, layers: tuple[str, ...]) -> object:
         made.append(folder)
         assert all_started.wait(60)
         return object()

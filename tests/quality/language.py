@@ -15,10 +15,9 @@ from ravestate.language.acts import acts, heard
 from ravestate.language.matcher import bundled_matcher
 from ravestate.modules import emotion
 from ravestate.modules.meta.nlp import Settings
-from ravestate.modules.meta.nlp.answer import YesNo, yesno_of
 
 LABELLED = (
-    "questions_rows", "kinds_rows", "yesno_rows", "answers_rows", "intents_rows", "quiet_rows", "emotion_rows", "feelings_rows", "acts_rows", "flags_rows",
+    "questions_rows", "kinds_rows", "yesno_rows", "answers_rows", "answers_fresh_rows", "intents_rows", "quiet_rows", "emotion_rows", "feelings_rows", "acts_rows", "flags_rows",
 )  # fmt: skip
 SETS = ("triples_rows", "typed_rows", *LABELLED)
 
@@ -41,12 +40,6 @@ def intents(text: str) -> str:
     return "+".join(intent.removeprefix("intent_") for intent in seen.acted) or "-"
 
 
-def answered(text: str) -> YesNo:
-    """Return the meaning that a loaded nlp finds in an answer."""
-    bundled_matcher("answers").load()
-    return yesno_of(text)
-
-
 def quiet(text: str) -> str:
     """Return how idle understands a text: as a request for quiet, a farewell, or neither."""
     heard = acts_of(text)
@@ -62,8 +55,9 @@ def feelings(text: str) -> str:
 SEE: dict[str, Callable[[str], str]] = {
     "questions_rows": modules.questions,
     "kinds_rows": modules.questions,
-    "yesno_rows": lambda text: modules.yesno_label(answered(text)),
+    "yesno_rows": modules.yesno,
     "answers_rows": modules.yesno,
+    "answers_fresh_rows": modules.yesno,
     "intents_rows": intents,
     "quiet_rows": quiet,
     "emotion_rows": feelings,
@@ -111,6 +105,7 @@ def measured(name: str) -> Result:
         "questions_rows",
         "kinds_rows",
         "answers_rows",
+        "answers_fresh_rows",
         "intents_rows",
         "flags_rows",
     ):  # the others need no tree

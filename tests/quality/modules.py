@@ -17,6 +17,7 @@ from ravestate.language.normal import Normal
 from ravestate.modules import genqa as genqa_module
 from ravestate.modules.meta.nlp import QuestionWord, Settings, YesNo
 from ravestate.modules.meta.nlp.analysis import MATCHERS, Analysis, analyse
+from ravestate.modules.meta.nlp.answer import answers
 from ravestate.modules.meta.nlp.clause import Clause
 from ravestate.modules.meta.nlp.inquiry import question_of
 from ravestate.modules.meta.nlp.pipeline import TOGETHER, Pipeline, pipeline
@@ -30,7 +31,7 @@ FLAGS = ("negated", "past", "hearsay", "conditional", "plan", "question", "reque
 
 
 def analysed(text: str) -> Analysis:
-    return _analysed(text, tuple(bundled_matcher(name).loaded for name in (*MATCHERS, "answers")))
+    return _analysed(text, (*(bundled_matcher(name).loaded for name in MATCHERS), answers().loaded))
 
 
 @cache
@@ -97,7 +98,7 @@ def questions(text: str) -> str:
 
 def yesno(text: str) -> str:
     """Return the label of the meaning that a loaded nlp finds in an answer."""
-    bundled_matcher("answers").load()
+    answers().load()
     return yesno_label(analysed(text).yesno)
 
 

@@ -16,6 +16,7 @@ from quality.modules import analysed
 from ravestate.language.acts import heard, only
 from ravestate.language.matcher import bundled_matcher
 from ravestate.modules.meta.nlp.analysis import MATCHERS
+from ravestate.modules.meta.nlp.answer import answers
 from ravestate.modules.skill.agentqa.life_file import read_life
 from ravestate.modules.skill.agentqa.remarks import act_in, remark_in
 from ravestate.modules.skill.agentqa.router import Match, router_of
@@ -29,7 +30,7 @@ from ravestate.modules.skill.wildtalk.listening import Heard, Listener, State
 __all__ = ["FLOORS", "SETS", "result", "results"]
 
 FLOORS = {
-    "persqa_facts": 0.97,
+    "persqa_facts": 0.91,
     "agentqa_asks": 0.96,
     "about_rows": 0.95,
     "agentqa_remarks": 0.96,
@@ -83,8 +84,9 @@ def persqa_facts(sentence: str) -> str:
 
 @cache
 def load() -> None:
-    for name in (*MATCHERS, "answers"):
+    for name in MATCHERS:
         bundled_matcher(name).load()
+    answers().load()
     kinds.load()
 
 

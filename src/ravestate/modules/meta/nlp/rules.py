@@ -15,6 +15,7 @@ from ravestate.modules import interloc, rawio
 
 from . import names
 from .analysis import MATCHERS, analyse
+from .answer import answers
 from .intent import intent_matcher
 from .names import Settings, module
 from .pipeline import pipeline
@@ -38,8 +39,9 @@ def learn(ctx: rs.RuleContext) -> None:
     """Load the matchers in the background. Until then, only sentences that equal an example are recognised."""
     wait_for_prompt()
     try:
-        for name in (*MATCHERS, "answers"):
+        for name in MATCHERS:
             bundled_matcher(name).load()
+        answers().load()
         bundled_moves().load()
     except ModelMissing as error:
         warn_once(ctx.log, error)

@@ -8,7 +8,7 @@ from dataclasses import replace
 import ravestate as rs
 from ravestate.errors import RavestateError
 from ravestate.modules import idle, interloc, ontology, rawio, verbaliser
-from ravestate.modules.meta.nlp.answer import yesno_of
+from ravestate.modules.meta.nlp.answer import is_plain_yes, yesno_of
 from ravestate.modules.meta.verbaliser.intents import Intent
 
 from . import people
@@ -86,12 +86,14 @@ async def listen(ctx: rs.RuleContext) -> None:
     """Notice an answer to the question, or a user's wish that the agent remember or forget their face."""
     text, question = ctx.payload(rawio.input.changed), _open(ctx)
     wish = await asyncio.to_thread(wish_of, text)
-    answer = yesno_of(text)
+    answer = await asyncio.to_thread(yesno_of, text)
     front = in_front(ctx[visitors], ctx[history])
     if wish:
         ctx.emit(withdrawn if wish == "forget" else agreed, front.key if front else "")
     elif question is not None and answer and not answer.unsure:
-        ctx.emit(agreed if answer.yes and not answer.no else refused, question.key)
+        if not answer.no and not is_plain_yes(text):
+            return  # "I love it here" is no consent
+        ctx.emit(refused if answer.no else agreed, question.key)
     else:
         return
     ctx[asking] = None

@@ -12,16 +12,15 @@ from dataclasses import dataclass, replace
 
 from ravestate.modules import nlp
 
-from .answers import answer, without_opening
+from .answers import without_opening
 from .changes import is_partial, is_similar, may_correct, misheard
 from .kinds import FITTING, kind_of, likeness
-from .links import NOW
 from .reading import Reader
 from .talk import Talk
 from .told import Told, retold_with
-from .topics import TOPICS, WORDS, Fact
+from .topics import NOW, TOPICS, WORDS, Fact
 from .values import number_in, value_of
-from .wording import Facts, among, mentioned, same
+from .wording import among, mentioned, same
 
 _SUBJECTS = frozenset(["it", "that", "this", "he", "she", "they", "i"])
 _CONTENT = frozenset(["NOUN", "PROPN", "NUM", "ADJ", "VERB", "X"])
@@ -72,9 +71,9 @@ def corrected_in(
             return Correction(free=tuple(new for _, new in free), gone=tuple(old for old, _ in free))
     rest = without_opening(text)
     if not seen.contrasts and rest and not asked and seen.question is None:
-        topic = _opposed(reader.known, rest, recent, latest, seen, answers=talk.spoken.rstrip().endswith("?"))
-        for fact in answer(rest, topic, seen) if topic else ():
-            return Correction(_instead(topic, fact.values[0], latest if topic == recent else ()))
+        topic = _opposed(reader, rest, recent, latest, answers=talk.spoken.rstrip().endswith("?"))
+        for value in reader.values_in(rest, topic) if topic else ():
+            return Correction(_instead(topic, value, latest if topic == recent else ()))
     if recent and may_correct(seen, recent) and (facts := misheard(text, recent, latest, seen)):
         return Correction(_instead(recent, facts[0].values[0], latest))
     return Correction()
@@ -128,15 +127,14 @@ def _may_retell(seen: nlp.Analysis, one: Told, wrong: str) -> bool:
     )
 
 
-def _opposed(known: Facts, rest: str, recent: str, latest: Sequence[str], seen: nlp.Analysis, *, answers: bool) -> str:
+def _opposed(reader: Reader, rest: str, recent: str, latest: Sequence[str], *, answers: bool) -> str:
     """Return the topic that words such as *no, Leipzig* correct; empty if this is not clear.
 
     It is the topic mentioned last, or else the only known topic that the value suits. If the agent's last words were a
     question (`answers`), the words may answer it, so only the topic mentioned last counts.
     """
-    values = {
-        topic: [one for fact in answer(rest, topic, seen) for one in fact.values] for topic in {*known, recent} - {""}
-    }
+    seen, known = reader.seen, reader.known
+    values = {topic: reader.values_in(rest, topic) for topic in {*known, recent} - {""}}
     if recent and may_correct(seen, recent) and any(_is_like(one, recent, latest) for one in values[recent]):
         return recent
     if answers or not (

@@ -8,6 +8,8 @@ from importlib.resources import files
 from ravestate.language.examples import read_examples
 from ravestate.language.matcher import Matcher
 
+from .tags import tagger
+
 FITTING = {
     "name": ("person",),
     "people": ("person",),
@@ -31,13 +33,6 @@ def nouns() -> Matcher:
     return Matcher(read_examples(_FOLDER / "nouns.yaml").classes, least=0.0, shapes=0.0)
 
 
-@cache
-def frames() -> Matcher:
-    """Return the classifier of sentences with a stand-in for their value. It may not be loaded yet."""
-    found = read_examples(_FOLDER / "frames.yaml")
-    return Matcher(found.classes, found.none)
-
-
 def kind_of(value: str) -> str:
     """Return the class of nouns that a value fits best; empty if unsure."""
     ranked = nouns().ranked(value)
@@ -58,12 +53,6 @@ def likeness(value: str, kind: str) -> float:
     return max(fitting, default=-1.0 if ranked and ranked[0].name else 0.0)
 
 
-def is_remark(value: str) -> bool:
-    """Return whether a value is probably a remark, a time or a state, and therefore no answer."""
-    ranked = nouns().ranked(value)
-    return bool(ranked) and ranked[0].name in ("remark", "state", "time") and ranked[0].margin > 0.15
-
-
 def load() -> None:
     """Load the classifiers, unless they are loaded.
 
@@ -72,4 +61,4 @@ def load() -> None:
     """
     nouns().load()
     acts().load()
-    frames().load()
+    tagger().load()

@@ -1,93 +1,233 @@
-"""The facts that an utterance tells or asks for, read from its statements."""
+"""The facts that an utterance tells or asks for.
+
+The tagger finds the values that the user states or denies. The statements of the utterance show the user's questions.
+"""
 
 from __future__ import annotations
 
 import itertools
 import re
-from collections.abc import Iterable, Iterator
-from dataclasses import replace
+from functools import cached_property
 
+from ravestate.language.tagger import Tag
 from ravestate.modules import nlp
 from ravestate.modules.meta.nlp.phrase import Phrase
-from ravestate.modules.meta.nlp.tree import Word
+from ravestate.modules.meta.nlp.tree import Tree, Word
 
-from .being import being_in, beside_name
-from .changes import denied_by, ended_by, is_partial, renamed_in, switched_in
-from .fragments import fragments_in
-from .frames import framed_in
-from .link import Link
-from .links import predicate_of, pursuit_in, trade_in
-from .relatives import named_in
-from .topics import ASKS, LASTING, NAME, NOUNS, SAYS, TOPICS, WORDS, Fact, favourite
-from .utterance import MINE, Utterance
-from .values import is_gerund
-from .wording import alike, among, without
+from .plain import plain_tags
+from .tags import tagger
+from .topics import ASKS, ENDS, LASTING, NAME, NATIONS, NOUNS, NOW, TOPICS, WORDS, Fact, favourite
+from .values import value_of
+from .wording import Facts, alike, among, without
 
-_CALLED = frozenset(["be", "be called", "be named", "be spelled", "be spelt", "be written"])
-_ANY = re.compile(r"(?:any|there$|here$)", re.IGNORECASE)
-_INSTEAD = re.compile(r"\bno,? wait\b|\bwait,? no\b|\bI mean\b|\bsorry, ", re.IGNORECASE)
-"""Words with which speakers correct themselves: *I'm Voss, no wait, I'm Claudia*."""
+SURE = 0.5
+"""The least confidence of a value."""
+CLEAR = 0.9
+"""The confidence at which a sentence tells a value whatever the agent has asked."""
+OPENING = 20
+"""The maximum number of characters before a name that only its words show: *hello there, my name is*."""
+LONGEST = 1_000
+"""The maximum number of characters that the tagger reads."""
+FEW = 2
+"""The maximum number of words that are a value although the tagger does not know them."""
+MINE = frozenset(["mine", "ours"])
+"""Subjects that stand for something of the user's: *mine is Ada*, after *which dog is yours?*."""
+PEOPLE = frozenset(topic.name for topic in TOPICS.values() if topic.kind in ("people", "name"))
+_UNUSUAL = re.compile(r"[^\w\s.,;:!?'’\"-]")
+"""Characters that no word of English has. The network has not learnt them."""
+_PARTLY = re.compile(r"(?:n['’]t|\bnot) (?:just|only|merely|simply)\b|\bbecause\b", re.IGNORECASE)
+_PRONOUN = re.compile(r"\b(?:he|she|his|her|hers|him|its?)\b", re.IGNORECASE)
 
 
-class Reader(Utterance):
-    """The facts in an utterance: those that the user states, and the one that the user asks for."""
+class Reader:
+    """The values and topics in an utterance.
+
+    Args:
+        seen: The analysis of the utterance.
+        asked: The topic of the agent's open question, or an empty string.
+        person: The topic of the relative whom *he* or *his* means, or an empty string.
+        known: The earlier facts.
+    """
+
+    def __init__(self, seen: nlp.Analysis, asked: str = "", person: str = "", known: Facts | None = None) -> None:
+        self.seen, self.tree, self.known, self.asked = seen, seen.tree, known or {}, asked
+        self.words = {word.low for word in seen.tree.words}
+        mine = (said.object for said in seen.statements if said.subject.person == "I" or said.object.of("I"))
+        owned = (self.relative(object.head) for object in mine)
+        self.person = person or next(filter(None, owned), "")
+
+    # ---------------------------------------------------------------------------------- values
+
+    @cached_property
+    def tags(self) -> tuple[Tag, ...]:
+        """The values that the utterance states or denies."""
+        context = self.asked or (self.person if _PRONOUN.search(self.tree.text) else "")
+        text = self.tree.text
+        if len(self.seen.text) > LONGEST:
+            return ()
+        if not tagger().loaded:
+            unsure = any(
+                said.negated or said.hearsay or said.conditional or said.question for said in self.seen.statements
+            )
+            bare = self.asked if not (self.seen.yesno or self.seen.acts or self.seen.feelings) else ""
+            return () if unsure else plain_tags(text, bare)
+        context = "favourite" if context.startswith("favourite") else context
+        alone = tagger().tags(text)
+        found = list(tagger().tags(text, context)) if context else list(alone)
+        for number, tag in enumerate(found):  # "my name is Ada", after a question for the mother's name
+            told = next((one for one in alone if one.start < tag.end and one.end > tag.start), None)
+            found[number] = told if told is not None and told.score > CLEAR else tag
+        if _UNUSUAL.search(text) and not any(tag.label == NAME for tag in found):  # "my name is 🦊"
+            known = " ".join(_UNUSUAL.sub(" ", text).split())
+            named = [tag for tag in tagger().tags(known) if tag.label == NAME]
+            found += named or [tag for tag in plain_tags(text, "") if tag.label == NAME and tag.start < OPENING]
+        return tuple(
+            tag
+            for tag in found
+            if tag.score >= SURE
+            and not self._is_contrasted(tag)
+            and not (tag.negated and (NOW & self.words or _PARTLY.search(text)))  # "I'm not just a nurse"
+            and (context or tag.text != text.strip(" .!?"))  # a bare word, such as "Hannover.", needs a question
+            and not (self._describes_work(tag) or self._is_over(tag) or self._is_anothers(tag))
+        )
 
     def facts(self) -> list[Fact]:
-        """Return the facts that the user states or denies, at most one of each for a topic."""
+        """Return the facts that the user states or denies."""
         told: dict[str, tuple[str, ...]] = {}
-        gone: dict[str, tuple[str, ...]] = {}
-        denied = ""  # the topic of the last denial: "my name isn't Ada, it's Ida"
-        for said in filter(self._asserted, (*self.seen.statements, *fragments_in(self))):
-            if ended := ended_by(self, said):
-                gone |= {topic: gone.get(topic, ()) + values for topic, values in ended.items()}
-                continue
-            for old, new, name in renamed_in(self, said):
-                gone[old] = (name,)
-                _add(told, new, [name] if new else ())
-            instead = denied and said.verb == "be" and said.subject.text.lower() == "it"
-            for link in [Link(denied, said.object)] if instead else self.links(said):
-                denied = link.topic if said.negated else ""
-                values = self.values(link, denied=said.negated and link.topic == NAME)
-                called = TOPICS[link.topic].kind == "people" and said.subject.head == "name"  # "his name was Joost"
-                over = (said.past and link.topic not in LASTING and not called) or (
-                    link.topic == NAME and not self.words.isdisjoint({"was", "were"})
-                )
-                known = self.known.get(link.topic, ())
-                if said.negated or self._dislikes(said) or (over and values and among(values[0], known)):
-                    said_so = (*values, link.phrase.text if link.phrase else "")
-                    fits = alike if TOPICS[link.topic].kind == "activity" else among
-                    meant = tuple(one for one in known if fits(one, said_so))
-                    named = values or meant or link.phrase is None or _ANY.match(link.phrase.text)
-                    lasts = not meant or denied_by(self, said, link.phrase) or TOPICS[link.topic].kind == "name"
-                    if named and lasts:
-                        gone.setdefault(link.topic, meant or values)
-                elif not over:
-                    if values and _INSTEAD.search(self.tree.text):
-                        told.pop(link.topic, None)
-                    _add(told, link.topic, values)
-        people = {value for topic, values in named_in(self) if topic != NAME for value in values}
-        for topic in [
-            topic for topic in told if TOPICS[topic].kind not in ("people", "name")
-        ]:  # "a fish named Bubbles"
-            told[topic] = without(told[topic], people)
-        for topic, values in named_in(self):
-            if topic not in gone and (topic != NAME or topic not in told):
-                _add(told, topic, values)
-        if told and (found := _INSTEAD.search(self.tree.text)):  # "Ada here, no wait, it's Ida"
-            topic, rest = [*told][-1], [word for word in self.tree.words if word.start >= found.end()]
-            if rest and not any(word.pos in ("VERB", "AUX") for word in rest):  # "I live in Bern. I mean Bonn."
-                fixed = self.fitting(topic, [next((word.text for word in rest if word.pos == "PROPN"), "")])
-                told[topic] = fixed or told[topic]
-            for said in self.seen.statements:
-                later = said.verb == "be" and said.subject.text.lower() == "it"
-                if later and self.tree.text.find(said.object.text) > found.end():
-                    told[topic] = self.fitting(topic, [said.object.text]) or told[topic]
-        if self.asked == "home" and "origin" in told and "home" not in told:
-            told["home"] = told.pop("origin")
-        for topic in told:  # "I live in Paris. I don't live in Paris."
-            told[topic] = without(told[topic], gone.get(topic, ()))
-        struck = [Fact(topic, values, gone=True) for topic, values in gone.items() if values or topic not in told]
+        gone = self._ended()
+        for tag in self.tags:
+            topic = self._topic(tag)
+            value = self.value(topic, self._whole(tag)) if topic else None
+            if value and tag.negated:
+                known = self.known.get(topic, ())
+                fits = alike if TOPICS[topic].kind == "activity" else among
+                gone[topic] = gone.get(topic, ()) + (tuple(one for one in known if fits(one, (value,))) or (value,))
+            elif value:
+                for other, values in self.known.items():  # "Rex is a dog", if Rex was taken for a cat
+                    both = {TOPICS[other].type, TOPICS[topic].type} == {"Animal"} and other != topic
+                    gone |= {other: (value,)} if both and among(value, values) else {}
+                before = told.get(topic, ())
+                told[topic] = before if among(value, before) else (*before, value) if TOPICS[topic].many else (value,)
+        for one in self.seen.contrasts:  # "Nora is my brother's wife, not my sister"
+            topic = self.noun(one.wrong)
+            named = [name for name in self.known.get(topic, ()) if name.lower() in self.tree.text.lower()]
+            if topic in PEOPLE and named:
+                gone[topic] = gone.get(topic, ()) + tuple(named)
+        told = {topic: without(values, gone.get(topic, ())) for topic, values in told.items()}
+        struck = [Fact(topic, values, gone=True) for topic, values in gone.items() if values or not told.get(topic)]
         return [*(Fact(topic, values) for topic, values in told.items() if values), *struck]
+
+    def names(self) -> dict[str, tuple[str, ...]]:
+        """Return the names of relatives, friends and pets, by topic."""
+        return {
+            fact.topic: fact.values for fact in self.facts() if TOPICS[fact.topic].kind == "people" and not fact.gone
+        }
+
+    def covers(self, said: nlp.Statement) -> bool:
+        """Return whether a statement tells the value of a topic, so that it is no free statement."""
+        parts = [part.text.lower() for part in (said.object, *said.phrases) if part.text]
+        parts += [self.span(said).lower()]
+        values = (tag.text.lower() for tag in self.tags if tag.label not in PEOPLE)
+        return any(value in part or (part and part in value) for value in values for part in parts)
+
+    def value(self, topic: str, text: str) -> str | None:
+        """Return some words as a value of a topic, in memory's spelling; None if they cannot be a value."""
+        found = value_of(text, TOPICS[topic], self.seen)
+        return NATIONS.get(found.lower(), found) if found and topic == "origin" else found
+
+    def values_in(self, text: str, topic: str) -> list[str]:
+        """Return the values of a topic in a text that answers a question about this topic."""
+        text = text if text.endswith((".", "!", "?")) else f"{text}."
+        found = tagger().tags(text, topic) if tagger().loaded else plain_tags(text, topic)
+        texts = [self._whole(tag) for tag in found if tag.label == topic and _holds(tag)]
+        bare = text.strip(" .!?")
+        if not texts and 0 < len(bare.split()) <= FEW and not any(tag.negated for tag in found):  # "no, ludo"
+            texts = [bare]
+        return [value for one in texts if (value := self.value(topic, one))]
+
+    def _whole(self, tag: Tag) -> str:
+        """Return the words of a tag, with the article of a place or an organisation: *the choir*."""
+        text = self.tree.text
+        found = re.search(r"\b(?:the|an?) $", text[: tag.start], re.IGNORECASE)
+        articled = tag.label in TOPICS and TOPICS[tag.label].kind in ("place", "organisation")
+        return f"{found[0]}{tag.text}" if found and articled and text[tag.start : tag.end] == tag.text else tag.text
+
+    def _topic(self, tag: Tag) -> str:
+        """Return the topic of a value; empty if it is the user's favourite of an unknown kind."""
+        if tag.label != "favourite":
+            return tag.label
+        if self.asked.startswith("favourite"):
+            return self.asked
+        words = self.tree.words
+        nouns: list[str] = []
+        for word in words:
+            if word.low in ("favourite", "favorite", "fave", "fav"):
+                after = itertools.takewhile(lambda one: one.pos in ("NOUN", "ADJ", "PROPN"), words[word.index + 1 :])
+                nouns.append(" ".join(one.low for one in after))
+        return favourite(f"favourite {nouns[-1]}") if nouns and nouns[-1] else ""
+
+    def _describes_work(self, tag: Tag) -> bool:
+        """Return whether words describe a job instead of naming it: *drive a bus*. They are a free statement."""
+        first = next((word for word in self.tree.words if word.start <= tag.start < word.end), None)
+        return (
+            tag.label == "occupation"
+            and first is not None
+            and first.tag in ("VB", "VBP", "VBD", "VBZ")
+            and " " in tag.text
+        )
+
+    def _is_over(self, tag: Tag) -> bool:
+        """Return whether a verb for a state, in the past tense, states a value: *I lived in Rome*."""
+        if tag.negated or tag.label in LASTING or tag.label in PEOPLE:
+            return False
+        for said in self.seen.statements:
+            parts = (part.text for part in (said.object, *said.phrases) if part.text)
+            if (
+                any(part in tag.text or tag.text in part for part in parts)
+                and said.past
+                and said.verb in WORDS["states"]
+            ):
+                return not said.negated
+        return False
+
+    def _is_contrasted(self, tag: Tag) -> bool:
+        """Return whether a value replaces a known one, so that the known one shows the topic: *not Leeds but Leipzig*."""
+        verbs = any(said.verb != "be" for said in self.seen.statements)
+        known = [value for values in self.known.values() for value in values]
+        pairs = [one for one in self.seen.contrasts if one.right.text == tag.text]
+        return not verbs and any(among(one.wrong.text, known) for one in pairs)
+
+    def _is_anothers(self, tag: Tag) -> bool:
+        """Return whether a relative is somebody else's: *he has a new girlfriend called Tamara*."""
+        having = (said for said in self.seen.statements if tag.label == self.relative(said.object.head))
+        return any(said.subject.text.lower() in ("he", "she", "they") for said in having)
+
+    def _ended(self) -> dict[str, tuple[str, ...]]:
+        """Return the topics that end as a whole: *I quit my job*, *I have no hobbies*."""
+        ended: dict[str, tuple[str, ...]] = {}
+        for said in self.seen.statements:
+            whole = (
+                f"{'not ' * said.negated}{predicate_of(said)} {said.object.head or said.object.text.lower()}".strip()
+            )
+            holds = not (said.hearsay or said.conditional or said.question or said.plan)
+            if said.subject.person == "I" and holds and (topic := ENDS.get(whole)) and not self._tagged(topic):
+                ended[topic] = ()
+            topic = NOUNS.get(said.object.head, "")
+            if (
+                holds
+                and said.negated
+                and self.has(said)
+                and topic
+                and not said.object.names
+                and not self._tagged(topic)
+            ):
+                ended[topic] = ()
+        return ended
+
+    def _tagged(self, topic: str) -> bool:
+        return any(tag.label == topic for tag in self.tags)
+
+    # ---------------------------------------------------------------------------------- questions
 
     def asks(self) -> Fact | None:
         """Return the fact that the user asks for. Its values are those to confirm or deny: *do I live in Ulm*."""
@@ -97,18 +237,37 @@ class Reader(Utterance):
                 continue
             parts = (said.triple.object, said.triple.subject, self.seen.question)
             unknown = next((part for part in parts if isinstance(part, kinds) and part != kinds.YES_NO), None)
-            if unknown is not None and said.subject.person == "I":
+            mine = said.subject.person == "I" and said.subject.text.lower() not in MINE
+            if unknown is not None and mine:
                 asked = f"{predicate_of(said)} {unknown.name}"
                 keys = (*(f"{asked} {phrase.head}" for phrase in said.phrases), asked)
                 keys = (*keys, f"know {asked}") if self.words & {"know", "remember"} else keys
                 if topic := self._asked_noun(said) or next(filter(None, map(ASKS.get, keys)), ""):
                     return Fact(topic)
-            for link in self.links(said):
-                people = TOPICS[link.topic].kind == "people"
-                values = () if unknown else self.values(link)
-                wanted = unknown in (kinds.PERSON, kinds.OBJECT, kinds.PLACE) or (unknown and said.verb == "call")
-                if values or wanted or (unknown is None and (people or link.phrase is None)):
-                    return Fact(link.topic, values)
+            if unknown is None and (asked := self._confirmed(said)):
+                return asked
+            named = said.verb in ("be", "call", "name", "spell")
+            if topic := (self.noun(said.subject) if named else "") or (
+                self.noun(said.object) if said.verb == "be" or self.has(said) else ""
+            ):
+                wanted = unknown in (None, kinds.PERSON, kinds.OBJECT, kinds.PLACE, kinds.AMOUNT) or said.verb == "call"
+                if wanted and (unknown != kinds.AMOUNT or topic == "age"):
+                    return Fact(topic)
+            if unknown is None and self.has(said) and (topic := NOUNS.get(said.object.head, "")):
+                return Fact(topic)  # "do I have a sister"
+        return None
+
+    def _confirmed(self, said: nlp.Statement) -> Fact | None:
+        """Return the fact in a question for yes or no: the question, turned into a statement, tells it."""
+        found = _INVERTED.search(self.tree.text)
+        if found is None or not (said.subject.person == "I" or said.subject.of("I")):
+            return None
+        verb = "" if found[1].lower() in ("do", "did") else f" {found[1].lower()}"
+        text = f"{found[2]}{verb} {found[3]}."
+        for tag in tagger().tags(text) if tagger().loaded else ():
+            topic = self._topic(tag)
+            if topic and _holds(tag) and (value := self.value(topic, tag.text)):
+                return Fact(topic, (value,))
         return None
 
     def _asked_noun(self, said: nlp.Statement) -> str:
@@ -124,147 +283,115 @@ class Reader(Utterance):
         had = (self.relative(said.object.head) for said in self.seen.statements if said.holds and self.has(said))
         return next(filter(None, had), "")
 
-    # ---------------------------------------------------------------------------------- statements to topics
+    # ---------------------------------------------------------------------------------- phrases
 
-    def _asserted(self, said: nlp.Statement) -> bool:
-        if said.hearsay or said.conditional or said.question or (said.plan and not self._is_habit(said)):
-            return False
-        thing = said.object.text
+    def noun(self, phrase: Phrase) -> str:
+        """Return the topic of *my job*, *my sister's name*, *my favourite food*; empty for other phrases."""
+        owner = phrase.owner
+        if phrase.text.lower() in MINE:
+            return self.asked
+        if phrase.text.lower() == "name":  # "name is Ada, the name's Ada"
+            return NAME
+        theirs = owner and owner.text.lower() in ("his", "her") and phrase.head == "name"
+        if theirs or phrase.text.lower() in ("he", "she"):
+            return self.person
+        if (bare := NOUNS.get((owner or phrase).text.lower())) in ("mother", "father") and phrase.head.lower() in (
+            "name",
+            "",
+            phrase.text.lower(),
+        ):
+            return bare  # "mum's name is Ann"
+        if owner is None or not phrase.of("I") or is_former(phrase.text):
+            return ""
+        if self.relative(phrase.head) and (owner.person != "I" or self._has_owner(phrase)):
+            return ""  # "my friend's dog"
+        if (phrase.head == "name" and owner.person != "I") or (phrase.head == "one" and owner.owner is not None):
+            return self.noun(owner)  # "my sister's name, one of my hobbies"
+        low = phrase.text.lower()
+        if phrase.head == "name" and (relative := self.relative(low.split()[-2].removesuffix("s"))):
+            return relative  # "my dogs name"
+        topic = NOUNS.get(" ".join(low.split()[-2:])) or NOUNS.get(phrase.head, "")
+        best = re.search(r"\bfavou?rite .+", low)
+        if best and phrase.head[:3] in best[0] and topic != "hobby":
+            return favourite(re.sub(r"\w+$", phrase.head, best[0]) if best[0].endswith(f"{phrase.head}s") else best[0])
+        return topic
+
+    def _has_owner(self, phrase: Phrase) -> bool:
+        words = [word for word in self.tree.words if word.lemma == phrase.head and word.text in phrase.text]
+        return any(owner_before(word, self.tree) for word in words)
+
+    def has(self, said: nlp.Statement) -> bool:
+        """Return whether the user says that they have something: *I have*, *I've got*."""
+        got = said.verb == "get" and any(word.low == "got" for word in self.tree.words)
+        return said.subject.person == "I" and (said.verb in ("have", "own") or got)
+
+    def relative(self, noun: str) -> str:
+        """Return the topic of a relative, a friend or a pet; empty for other nouns."""
+        topic = NOUNS.get(noun, "")
+        return topic if topic and TOPICS[topic].kind == "people" else ""
+
+    def verb(self, said: nlp.Statement) -> Word | None:
+        """Return the verb of a statement in the tree."""
+        last = said.triple.predicate.split()[-1]
+        verbs = [word for word in self.tree.words if word.low == last or word.lemma == said.verb]
+        return min(verbs, key=lambda word: word.pos not in ("VERB", "AUX"), default=None)
+
+    def is_denied(self, said: nlp.Statement) -> bool:
+        """Return whether a clause above a statement denies it: *it's not like I left*, *it's not true that I left*."""
         verb = self.verb(said)
-        if self.is_denied(said):
+        marks = [] if verb is None else [word.low for word in self.tree.children(verb, "mark")]
+        if verb is None or verb.dep not in ("advcl", "ccomp", "acl") or not {"like", "that"}.intersection(marks):
             return False
-        if verb is not None and verb.dep == "xcomp" and self.tree.head(verb).low == "about":
-            return False  # "I was about to move"
-        if any(phrase.preposition == "in" and phrase.head in WORDS["fiction"] for phrase in said.phrases):
-            return False
-        if self.denies_all or self.mistaken or "not_meant" in self.seen.acts or is_partial(self, said):
-            return False
-        if thing and any(thing in other.when and "when" in other.when for other in self.seen.statements):
-            return False  # "when I live in Paris, I will eat cheese"
-        return not said.request or said.subject.text.lower() == "i"
+        above = next((word for word in self.tree.ancestors(verb) if word.lemma in ("be", "'s")), None)
+        return above is not None and bool(self.tree.children(above, "neg"))
 
-    def _is_habit(self, said: nlp.Statement) -> bool:
-        """Return whether a statement flagged as a plan is a habit: *I like to read*, but not *I would like to read*."""
-        first = predicate_of(said).split()[0]
-        likes = [word for word in self.tree.words if word.lemma == first]
-        return first in WORDS["likes"] and not any(
-            aux.low in ("would", "'d") for aux in self.tree.children_of(likes, "aux")
-        )
+    def written(self, phrase: Phrase) -> str:
+        """Return a phrase with its article, as in the utterance."""
+        inner = r"\s+(?:(?:the|an?)\s+)?".join(map(re.escape, phrase.text.split()))
+        articles = r"(?:(?:the|an?|our|this|that|these|those)\s+)?"
+        name = r"(?:-[\w-]+|\s&\s\w+|\s(?:am|an der|upon|de|del)\s\w+)*"  # "Stoke-on-Trent, Frankfurt am Main"
+        found = re.search(rf"(?<![\w']){articles}{inner}(?!\w){name}", self.tree.text, re.IGNORECASE)
+        return found[0] if found else phrase.name or phrase.text
 
-    def links(self, said: nlp.Statement) -> list[Link]:
-        """Return the topics of a statement: by the table, or else by the words around its values."""
-        listed = list(self._listed(said))
-        framed = None if any(map(self.values, listed)) else framed_in(self, said)
-        return [*listed, framed] if framed else listed
-
-    def _listed(self, said: nlp.Statement) -> Iterator[Link]:
-        subject, object, predicate = said.subject, said.object, predicate_of(said)
-        if subject.person == "I" and subject.text.lower() not in MINE:
-            yield from self._of_user(said)
-        elif object.person == "I" and (found := SAYS.get(f"{predicate} me")):
-            yield Link(found[0], subject, found[1])
-        elif subject.of("I") and (found := SAYS.get(f"my {subject.head} {predicate} {object.preposition}")):
-            yield Link(found[0], object, found[1])
-        elif topic := self.noun(subject):
-            if f"{predicate} {object.preposition}" in ("answer to", "go by") and TOPICS[topic].kind == "people":
-                yield Link(topic, object)
-            elif predicate in _CALLED and not object.preposition:
-                sure = (
-                    bool(object.names) or (subject.head == "name" and subject.owner) or TOPICS[topic].kind != "people"
-                )
-                if subject.names and subject.head not in ("name", ""):
-                    return  # "my friends Ada and Bob, and my dog is called Rex"
-                yield Link(topic, object if object.text and isinstance(said.triple.object, str) else None, bool(sure))
-                yield from beside_name(self, said) if topic == NAME else ()
-            elif TOPICS[topic].kind == "activity" and (verb := self.verb(said)):
-                yield Link(topic, subject, value=self.span_of(verb.text, object))
-        elif said.verb == "be" and (topic := self.noun(object)):
-            yield Link(topic, subject if isinstance(said.triple.subject, str) else None, sure=topic != NAME)
-
-    def _of_user(self, said: nlp.Statement) -> Iterator[Link]:
-        predicate, object = predicate_of(said), said.object
+    def span(self, said: nlp.Statement) -> str:
+        """Return the last verb of a statement, its object, and the words between them."""
         verb = self.verb(said)
-        if verb is not None and verb.dep == "relcl" and not self.was_child:
-            value = self._equated(said, verb)
-            if value is None:
-                return  # "the film that I like"
-            said = replace(said, object=value)
-            object = value
-        if trade := trade_in(self, said):
-            yield trade
-            return
-        if switched := switched_in(self, said):
-            yield switched
-            return
-        has = self.has(said)
-        if has and (topic := NOUNS.get(object.head, "")) and (said.negated or said.question):
-            yield Link(topic, object if object.names else None)
-        told = list(self._by_table(said, has=has))
-        hobby = pursuit_in(self, said) if all(link.topic == "liking" or not link.sure for link in told) else None
-        told = [*(being_in(self, said) if predicate == "be" else ()), *told]
-        yield from [hobby] if hobby else told
-        if not hobby and {"subject"} == {link.topic for link in told if self.values(link)}:  # "I do law at Leiden"
-            yield from (Link("university", phrase) for phrase in said.phrases if phrase.preposition in ("at", "from"))
-
-    def _dislikes(self, said: nlp.Statement) -> bool:
-        """Return whether the user dislikes something: *I hate rain*, *I can't stand rain*."""
-        verbs = WORDS["enduring"] if said.negated else WORDS["dislikes"]
-        return said.subject.person == "I" and predicate_of(said) in verbs and bool(said.object.text)
-
-    def _equated(self, said: nlp.Statement, verb: Word) -> Phrase | None:
-        """Return the value for which the antecedent of a relative clause stands: *the firm I work for is Aldi*."""
-        stranded = [word.low for word in self.tree.children(verb, "prep") if not self.tree.children(word)]
-        for one in self.seen.statements:
-            if one.verb == "be" and one.holds and one is not said:
-                for side, other in ((one.object, one.subject), (one.subject, one.object)):
-                    if side.text and side.text == said.object.text and other.text:
-                        return replace(other, preposition=next(iter(stranded), ""))
-        return None
-
-    def _by_table(self, said: nlp.Statement, *, has: bool) -> Iterator[Link]:
-        """Yield the topics that the table has for *live in* (verb, preposition) or *have a job at* (with an object)."""
-        predicate, object = "like" if self._dislikes(said) else predicate_of(said), said.object
-        child = self.was_child or any(one.preposition == "as" and one.head in WORDS["young"] for one in said.phrases)
-        for phrase in dict.fromkeys((object, *said.phrases)):
-            nominal = predicate == "be" and not object.preposition and phrase.preposition not in ("", "from")
-            before = f"{self._word_before(phrase)} {phrase.preposition}"
-            keys = [f"{'have' if has else predicate} {object.head} {phrase.preposition}"] if phrase != object else []
-            keys += (
-                []
-                if nominal or (predicate == "be" and phrase != object and phrase.preposition != "from")
-                else [f"{predicate} {phrase.preposition}".strip()]
-            )
-            found = next(filter(None, map(SAYS.get, (*keys, before))), None)
-            if not found and phrase.preposition in ("for", "in", "with") and said.verb not in WORDS["passing"] | {"be"}:
-                found = ("club", False) if phrase.head in TOPICS["club"].nouns else None  # "I row for the club"
-            if found and found[0] == "liking" and phrase.head in WORDS["liked"]:
-                continue  # "I like a girl in my class"
-            if phrase.text and found and self._word_before(phrase) not in WORDS["returning"]:
-                topic = "childhood" if child and found[0] == "home" else found[0]
-                place = next(
-                    iter(said.phrases[said.phrases.index(phrase) + 1 :] if phrase in said.phrases else ()), phrase
-                )
-                inside = (
-                    TOPICS[topic].kind == "place" and not phrase.names and place.preposition == "in" and place.names
-                )
-                yield Link(topic, place if inside else phrase, found[1])  # "a hospital in Pune"
-                if (
-                    topic == "childhood"
-                    and self.words & {"born"}
-                    and not any(one.verb in ("bear", "born") and one.object != object for one in self.seen.statements)
-                ):
-                    yield Link("birthplace", phrase)  # "I was born and raised in Dresden"
-
-    def _word_before(self, phrase: Phrase) -> str:
-        """Return the word before a phrase and its preposition: a verb that the parser may have mistaken for a noun."""
-        pattern = rf"(\w+) {phrase.preposition} (?:an? |the )?{re.escape(phrase.text)}"
-        found = re.search(pattern, self.tree.text, re.IGNORECASE) if phrase.preposition else None
-        return found[1].lower() if found else ""
+        end = rf"(?:.{{0,40}}?{re.escape(said.object.text)})?"
+        found = re.search(rf"\b{re.escape(verb.low)}\w*\b{end}", self.tree.text, re.IGNORECASE) if verb else None
+        return found[0] if found else ""
 
 
-def _add(told: dict[str, tuple[str, ...]], topic: str, values: Iterable[str]) -> None:
-    for value in values:
-        one = "hobby" if topic == "liking" and is_gerund(value) else topic
-        before = told.get(one, ())
-        if value not in before and (TOPICS[one].many or not before):
-            told[one] = (*before, value)
+_INVERTED = re.compile(
+    r"\b(do|did|am|was|have|are|is) (i|we|(?:my|our) (?:favou?rite )?\w+(?:'s name| name)?) ([^?]+)\?", re.IGNORECASE
+)
+"""A question for yes or no about the user: the auxiliary, the subject and the rest."""
+
+
+def _holds(tag: Tag) -> bool:
+    """Return whether a value is sure enough, and not denied."""
+    return not tag.negated and tag.score >= SURE
+
+
+def predicate_of(said: nlp.Statement) -> str:
+    """Return the predicate without *not*, and without verbs of beginning or continuing: *work* of *start to work*."""
+    words = said.triple.predicate.removeprefix("not ").split()
+    while len(words) > 1 and (words[0] in WORDS["beginning"] or words[:2] == ["end", "up"]):
+        first = 2 if words[0] == "end" or words[1] == "to" else 1
+        if len(words) == first:
+            break  # "where did I end up"
+        del words[:first]
+        words[0] = said.verb if len(words) == 1 or words[0].endswith("ing") else words[0]
+    return " ".join(words)
+
+
+def is_former(words: str) -> bool:
+    """Return whether words are about somebody or something that is not the user's now: *my ex wife*."""
+    return bool(WORDS["former"] & set(re.split(r"\W", words.lower())))
+
+
+def owner_before(word: Word, tree: Tree) -> Word | None:
+    """Return the person before a noun, to whom it belongs: *friend*, in *my friend's cat*, *my friends cat*."""
+    for owner in tree.children(word, "poss", "compound"):
+        if owner.pos in ("NOUN", "PROPN") and (owner.dep == "poss" or owner.tag == "NNS"):
+            return owner
+    return None

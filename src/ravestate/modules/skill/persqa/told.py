@@ -15,14 +15,10 @@ from ravestate.modules import nlp
 from ravestate.modules.meta.nlp.tree import SUBJECTS, Tree, Word
 
 from .answers import spelled_out
-from .changes import ended_by, is_brief, renamed_in
+from .changes import is_brief
 from .kinds import likeness
-from .links import NOW
-from .reading import Reader
-from .relatives import named_in
-from .topics import NAME, NOUNS, TOPICS, WORDS
-from .utterance import is_former
-from .values import value_of
+from .reading import Reader, is_former
+from .topics import NAME, NOUNS, NOW, TOPICS, WORDS
 from .wording import Facts
 
 _SAID_BACK = {
@@ -92,7 +88,7 @@ def told_in(reader: Reader, before: Sequence[Told] = ()) -> tuple[list[Told], li
     free: list[Told] = []
     heard: list[Told] = []
     last = next((one.who for one in reversed(before) if one.who), "")
-    named = {topic: values[0] for topic, values in named_in(reader) if values}
+    named = {topic: values[0] for topic, values in reader.names().items()}
     for said in reader.seen.statements:
         he = said.subject.text.lower() in ("he", "she", "they") and not _LABEL.search(said.triple.predicate)
         subject = last if he else _about(reader, said)
@@ -233,7 +229,7 @@ def _is_worth_keeping(reader: Reader, said: nlp.Statement) -> bool:
     timed = said.verb != "be" and said.object.text and said.object.text in said.when  # "since 2010"
     if timed or reader.is_denied(said) or (verb is not None and verb.dep == "pcomp"):  # "..., to be honest"
         return False
-    if ended_by(reader, said) or any(renamed_in(reader, said)) or _is_momentary(reader, said):
+    if _is_momentary(reader, said):
         return False
     there = (
         said.subject.person == "other" and said.verb in ("come", "go") and said.object.names
@@ -300,7 +296,7 @@ def _about(reader: Reader, said: nlp.Statement) -> str:
         elif said.verb in ("have", "get", "own"):
             fits = fits and _gained(reader, said)
         fits = fits and not (object.names and reader.relative(object.head))  # "a cat called Luna"
-        return "I" if spoken and fits and not any(map(reader.values, reader.links(said))) else ""
+        return "I" if spoken and fits and not reader.covers(said) else ""
     words = subject.text.split() if subject.of("I") else []
     if reader.relative(subject.head) and words:
         naming = said.verb == "be" and ((object.names and not object.preposition) or not object.text)
@@ -310,11 +306,11 @@ def _about(reader: Reader, said: nlp.Statement) -> str:
     number = {"CARDINAL", "QUANTITY"} & {entity.label for entity in reader.seen.entities if object.text in entity.text}
     dated = said.verb == "be" and (said.when or (object.text and number))  # "my birthday is in May"
     thing = said.verb == "be" and object.text and likeness(f"a {subject.head}", "possession") > 0.1  # "my car is new"
-    if words and any(map(reader.values, reader.links(said))):
+    if words and reader.covers(said):
         return ""
     if words and (dated or thing or (said.verb == "be" and object.names)) and not reader.noun(subject):
         return subject.text
-    person = subject.names and not subject.head and value_of(subject.text, TOPICS[NAME], reader.seen, sure=False)
+    person = subject.names and not subject.head and likeness(subject.text, NAME) > 0
     return subject.text if person and not (reader.noun(object) or reader.noun(subject)) else ""
 
 

@@ -34,7 +34,6 @@ class Topic:
     only_with: str = ""
     besides: tuple[str, ...] = ()
     nouns: tuple[str, ...] = ()
-    says: tuple[str, ...] = ()
     ends: tuple[str, ...] = ()
     asks: tuple[str, ...] = ()
     touching: tuple[str, ...] = ()
@@ -66,6 +65,8 @@ class _Topics(dict[str, Topic]):
 NAME = "name"
 LASTING = frozenset(["subject", "university", "birthplace", "childhood"])
 """Topics whose facts may be in the past tense: *I studied law*."""
+NOW = frozenset(["tonight", "today", "tomorrow", "now", "this"])
+"""Words for a time that makes a statement momentary."""
 _FILE = files(__name__.rpartition(".")[0]) / "topics.yaml"
 _TABLE: dict[str, Any] = load_yaml(_FILE.read_text(encoding="utf-8"), str(_FILE))
 _ROWS = TypeAdapter(list[Topic]).validate_python([{"name": name, **row} for name, row in _TABLE.pop("topics").items()])
@@ -77,15 +78,12 @@ ASKED = tuple(topic.name for topic in _ROWS if topic.asked)
 WORDS = {name: frozenset(words) for name, words in cast("dict[str, list[str]]", _TABLE).items()}
 """Name of a list of words in ``topics.yaml`` → its words."""
 NOUNS = {noun: topic.name for topic in _ROWS for noun in topic.nouns}
-SAYS = {phrase.rstrip("~"): (topic.name, not phrase.endswith("~")) for topic in _ROWS for phrase in topic.says}
-"""Words before a value → the topic, and whether any value fits (or only a value of the topic's kind)."""
 ENDS = {phrase: topic.name for topic in _ROWS for phrase in topic.ends}
 _NATIONS: dict[str, Any] = load_yaml(
     (files(__name__.rpartition(".")[0]) / "nations.yaml").read_text(encoding="utf-8"), "nations.yaml"
 )
 NATIONS = {word: country for country, words in _NATIONS["nations"].items() for word in words}
 """A word for the people of a country → the country."""
-NATIONS_BESIDE = frozenset(_NATIONS["beside"])
 ASKS = {phrase: topic.name for topic in _ROWS for phrase in topic.asks}
 
 

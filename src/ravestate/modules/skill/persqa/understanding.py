@@ -8,20 +8,17 @@ from dataclasses import dataclass, replace
 from typing import Literal
 
 from ravestate.language.feelings import SORROWS
-from ravestate.language.matcher import bundled_matcher
-from ravestate.language.normal import plain
 from ravestate.modules import nlp
+from ravestate.modules.meta.nlp.answer import is_plain_yes
 
 from . import kinds
-from .answers import answer, may_stand_alone, opening, picked, self_asked, spelled_out, without_opening
+from .answers import spelled_out
 from .contrast import Correction, corrected_in, denied_in
-from .kinds import likeness
-from .reading import Reader
+from .reading import PEOPLE, Reader
 from .recollection import asks_for_words, asks_to_repeat
 from .talk import CONFIRM, FORGET, Talk
 from .told import Told, recalled, told_in
 from .topics import NAME, NOUNS, TOPICS, WORDS, Fact, is_topic, touched_by
-from .values import value_of
 from .wording import Facts, among
 
 EVERYTHING = "everything"
@@ -102,10 +99,6 @@ def understand(
     return replace(meaning, busy=busy, **noted)
 
 
-_REFUSES = re.compile(r"\b(?:not|never|do ?nt|or no)\b|n['’]t\b", re.IGNORECASE)
-"""Words with which an utterance never confirms a deletion."""
-
-
 class _Hearing:
     def __init__(
         self, seen: nlp.Analysis, talk: Talk, known: Facts, now: float, within: float, told: tuple[Told, ...]
@@ -116,11 +109,11 @@ class _Hearing:
         self.topic = self.pending.topic if self.pending else ""
         self.waits = is_topic(self.topic)
         asked = talk.doubt if self.topic == CONFIRM else self.topic if self.waits else ""
-        self.reader = Reader(seen, asked, talk.person, known, talk.correctable or asked)
+        self.reader = Reader(seen, asked, talk.person, known)
         self.acts = {match.name for match in kinds.acts().match_all(seen.sentences) if match is not None}
         self.text = spelled_out(seen.tree.text)
         self.sum = any(map(str.isdigit, self.text))  # "no time, 12 x 3" wants a sum, which another module answers
-        self.named = self.waits and TOPICS[self.topic].kind in ("name", "people") and likeness(seen.text, NAME) > 0.1
+        self.named = self.topic in PEOPLE and any(tag.label == self.topic for tag in self.reader.tags)
         self.leave = "farewell" in seen.acts and not self.is_unsure("farewell")
         self.sorry = bool(SORROWS & set(seen.feelings))
         self.moved = bool(set(seen.feelings) - _CALM or {"joke", "praise", "play"} & set(seen.acts))
@@ -132,7 +125,7 @@ class _Hearing:
             return wish
         if topic == FORGET:
             yesno = seen.yesno if self.fresh else None  # a "yes" to something else must not delete anything
-            if seen.question is not None or _REFUSES.search(self.text):
+            if seen.question is not None or not is_plain_yes(self.text):
                 yesno = None if yesno and yesno.yes else yesno  # deletion cannot be undone
             no = yesno and (yesno.no or yesno.unsure)
             if (yesno and (yesno.yes or no)) or not asks:
@@ -169,9 +162,6 @@ class _Hearing:
                 return inquiry
         told = topics
         facts = [fact for fact in stated if fact.topic in told or self.matters(fact)]
-        if self.waits and topic not in told and "nothing" not in self.acts and not self.reader.denies_all:
-            facts = [*opening(self.text, topic, seen), *facts]
-        facts = facts or self_asked(seen.text, seen)
         pointed = not self.reader.words & _NAMING and all(fact.topic == NAME for fact in facts)  # "it's Leipzig"
         fixed = Correction() if asks else self.correction([v for fact in facts for v in fact.values if not pointed])
         facts = [] if fixed and pointed else facts
@@ -207,11 +197,10 @@ class _Hearing:
         if identity := self.identity():
             return identity
         if aside:
-            side = opening(self.text, topic, seen) if asks and self.waits else []
             mine = (said.question and (said.subject.person == "I" or said.subject.of("I")) for said in seen.statements)
-            if asks and not side and not seen.advised and "ask_own" in self.acts and any(mine):
+            if asks and not seen.advised and "ask_own" in self.acts and any(mine):
                 return Meaning("asked", (Fact(""),))
-            return Meaning("told" if side else "nothing", tuple(side), topic, self.leave, aloud=False)
+            return Meaning("nothing", topic=topic, leave=self.leave, aloud=False)
         if (relative := self.reader.without_name()) and not self.known.get(relative):
             return Meaning("mentioned", topic=relative)
         return (self.answered() if self.waits else None) or Meaning("nothing")
@@ -257,30 +246,6 @@ class _Hearing:
         seen, topic, yesno = self.seen, self.topic, self.seen.yesno
         if self.fresh and "nothing" in self.acts and not self.sorry:
             return Meaning("none" if topic != NAME else "declined", topic=topic, aloud=not self.sum)
-        if topic == NAME and self.reader.words & {"he", "she", "they"}:
-            return None  # "he's called Jonathan"
-        felt = seen.feelings and len(self.text.split()) > 2
-        empty = (
-            all(word.pos in ("ADV", "PART", "CCONJ", "PUNCT") for word in seen.tree.words) and topic != NAME
-        )  # "and"
-        facts = (not felt and not empty and answer(self.text, topic, seen)) or (
-            yesno.no and answer(without_opening(self.text), topic, seen)
-        )  # "no, from Bremen"
-        values = [value for fact in facts or () for value in fact.values]
-        loose = TOPICS[topic].kind == "activity" or {word.pos for word in seen.tree.words} & {"ADV", "PART"}
-        kind = topic if topic in kinds.FITTING else TOPICS[topic].kind
-        fitting = kind in kinds.FITTING and all(likeness(value, kind) > 0.2 for value in values)
-        clear = (not loose or fitting) and all(value_of(value, TOPICS[topic], seen, sure=False) for value in values)
-        if self.fresh and not any(
-            word.pos in ("PROPN", "NUM") and word.text in " ".join(values) for word in seen.tree.words
-        ):
-            chosen = picked(topic, seen)
-            facts, clear = (chosen, True) if chosen else (facts, clear)
-        polite = {
-            act for act in ("thanks", "greeting", "acknowledgement") if act in seen.acts and not self.is_unsure(act)
-        }
-        if facts and may_stand_alone(seen, clear=clear) and not polite:
-            return Meaning("told", tuple(facts), topic)
         if not self.fresh or not yesno:
             return None
         if yesno.unsure or yesno.no:
@@ -288,19 +253,17 @@ class _Hearing:
             return Meaning(
                 "unsure" if yesno.unsure else "declined" if declined else "none", topic=topic, aloud=not self.sum
             )
-        known = (
-            plain(seen.text) in bundled_matcher("answers").exact
-        )  # words that only resemble an answer may be a statement
-        mere = known and not {"acknowledgement", "praise", "joke"} & set(seen.acts)
+        mere = (
+            is_plain_yes(self.text)
+            and len(self.text.split()) <= BRIEF
+            and not {"acknowledgement", "praise", "joke"} & set(seen.acts)
+        )
         return Meaning("which", topic=topic) if mere else None
 
     def vouched(self) -> Meaning | None:
         """Return the answer to the question that tests who the user is. If they refuse, the meaning has no facts."""
         seen, topic = self.seen, self.talk.doubt
         told = [fact for fact in self.reader.facts() if fact.topic == topic and not fact.gone]
-        if not told and seen.question is None:
-            told = answer(self.text, topic, seen)
-            told = told if may_stand_alone(seen, clear=bool(told)) else []
         refused = seen.yesno.no or seen.yesno.unsure or {"refuse", "nothing"} & self.acts
         return Meaning("vouched", tuple(told[:1])) if told or refused else None
 

@@ -1,0 +1,95 @@
+"""Small networks on top of the bundled sentence model. ``tools/networks`` trains them."""
+
+from __future__ import annotations
+
+import os
+import threading
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+from ravestate.errors import PlatformError
+
+from .bundled import SENTENCE_MODELS, requirement
+from .encoder import BUNDLED
+from .heap import note_load
+from .loading import LOADING
+from .model import model_in
+
+if TYPE_CHECKING:
+    from numpy.typing import NDArray
+
+
+class Network:
+    """An ONNX file that reads the vectors of a text's tokens, after several layers of the encoder. Thread-safe."""
+
+    def __init__(self, file: Path, model: str = BUNDLED) -> None:
+        """Choose a file; load nothing yet.
+
+        Args:
+            file: An ONNX file with the inputs ``vectors`` (1, tokens, layers * d), ``marks`` (1, tokens) and perhaps
+                ``context`` (1,). Its metadata has ``labels`` with semicolons between them.
+            model: The bundled model whose vectors the network reads.
+        """
+        self._file, self._model = file, model
+        self._lock = threading.Lock()
+        self._session: Any = None
+        self.labels: list[str] = []
+
+    @property
+    def loaded(self) -> bool:
+        """Whether the network is ready."""
+        return self._session is not None
+
+    def load(self) -> None:
+        """Load the encoder and the network, once.
+
+        Raises:
+            PlatformError: The sentence model is missing (`ModelMissing`), or a file is broken.
+        """
+        base = model_in(None, self._model)
+        if not base.layers:
+            raise PlatformError(f"the sentence model {self._model} has other layers: {requirement(SENTENCE_MODELS)}")
+        with self._lock:
+            if self._session is None:
+                with LOADING:
+                    self._session = self._opened()
+                    note_load()
+
+    def _opened(self) -> Any:
+        os.environ.setdefault("ORT_DISABLE_TELEMETRY", "1")
+        import onnxruntime  # pyright: ignore[reportMissingTypeStubs]
+
+        runtime: Any = onnxruntime
+        options = runtime.SessionOptions()
+        options.intra_op_num_threads = options.inter_op_num_threads = 1
+        # Without this option, integer products overflow on processors without VNNI, and results differ by machine.
+        options.add_session_config_entry("session.x64quantprecision", "1")
+        options.enable_cpu_mem_arena = options.enable_mem_pattern = False
+        options.log_severity_level = 4  # log no errors, because they are raised as exceptions
+        try:
+            session = runtime.InferenceSession(str(self._file), options, providers=["CPUExecutionProvider"])
+            labels = session.get_modelmeta().custom_metadata_map["labels"]
+        except Exception as error:  # the library has its own exceptions, with long messages
+            raise PlatformError(f"the network {str(self._file)!r} is broken: install ravestate again") from error
+        self.labels = labels.split(";")
+        return session
+
+    def run(
+        self, text: str, pair: str | None = None, context: int | None = None
+    ) -> tuple[list[tuple[int, int]], list[NDArray[Any]]]:
+        """Return the span of each token in a text, and the outputs of the network for the text.
+
+        Args:
+            text: One or more sentences in normal form.
+            pair: A second text. Then the marks of the tokens say to which text they belong; otherwise, which begin with
+                a capital.
+            context: The number of the context, if the network has contexts.
+        """
+        import numpy as np
+
+        spans, types, vectors = model_in(None, self._model).token_vectors(text, pair)
+        marks = types if pair is not None else [int(start < end and text[start].isupper()) for start, end in spans]
+        given = {"vectors": vectors[None], "marks": np.array([marks])}
+        if context is not None:
+            given["context"] = np.array([context])
+        return spans, self._session.run(None, given)

@@ -1,0 +1,168 @@
+"""The parts of the training that both kinds of networks share: vectors, batches, the loop, and the ONNX file."""
+
+from __future__ import annotations
+
+import hashlib
+import random
+import time
+from collections.abc import Callable, Iterable, Sequence
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+
+from ravestate.language.encoder import BUNDLED
+from ravestate.language.model import model_in
+
+SRC = Path(__file__).parents[2] / "src" / "ravestate"
+WIDTH = 384
+"""The length of a token's vector after one layer."""
+
+
+class Row:
+    """A text, or a pair of texts, as a network sees it: the vectors of its tokens, and the classes to learn."""
+
+    def __init__(self, text: str, pair: str | None = None, model: str = BUNDLED, longest: int = 96) -> None:
+        spans, types, vectors = model_in(None, model).token_vectors(text, pair)
+        self.spans = spans[:longest]
+        self.vectors = vectors[:longest].astype(np.float16)
+        """The vectors: shape (tokens, layers * WIDTH)."""
+        capitals = [int(start < end and text[start].isupper()) for start, end in spans] if pair is None else types
+        self.marks = capitals[:longest]
+        self.context = 0
+        self.classes: list[int] = []
+        self.denied: list[float] = []
+
+    def __len__(self) -> int:
+        return len(self.spans)
+
+
+def digest(files: Iterable[Path]) -> str:
+    """Return a short hash of the contents of some files."""
+    found = hashlib.sha256()
+    for file in sorted(files):
+        found.update(file.read_bytes())
+    return found.hexdigest()[:16]
+
+
+def batches(rows: Sequence[Row], size: int, order: random.Random) -> list[list[Row]]:
+    """Return the rows in a new order, in batches of similar length, because padding costs time."""
+    ordered = sorted(rows, key=lambda row: len(row) + order.random() * 4)
+    found = [ordered[at : at + size] for at in range(0, len(ordered), size)]
+    order.shuffle(found)
+    return found
+
+
+def padded(torch: Any, rows: Sequence[Row]) -> tuple[Any, Any, Any]:
+    """Return the vectors, the marks and the lengths of some rows, with random noise against overfitting."""
+    longest = max(map(len, rows))
+    vectors = torch.zeros(len(rows), longest, rows[0].vectors.shape[1])
+    marks = torch.zeros((len(rows), longest), dtype=torch.long)
+    for number, row in enumerate(rows):
+        vectors[number, : len(row)] = torch.from_numpy(row.vectors.astype(np.float32))
+        marks[number, : len(row)] = torch.tensor(row.marks)
+    vectors = vectors + torch.randn_like(vectors) * 0.05
+    vectors = vectors * (torch.rand(vectors.shape[:2]) > 0.05)[..., None]
+    return vectors, marks, torch.tensor([len(row) for row in rows])
+
+
+def mixer(torch: Any, layers: int) -> Any:
+    """Return the first part of both networks: a weighted mean of the layers, plus a vector for marked tokens."""
+    nn = torch.nn
+
+    class Mixer(nn.Module):  # type: ignore[misc, name-defined]
+        def __init__(self) -> None:
+            super().__init__()
+            self.weights = nn.Parameter(torch.zeros(layers))
+            self.norms = nn.ModuleList([nn.LayerNorm(WIDTH) for _ in range(layers)])
+            self.mark = nn.Embedding(2, WIDTH)
+            nn.init.normal_(self.mark.weight, 0, 0.1)
+
+        def forward(self, vectors: Any, marks: Any) -> Any:
+            weights, parts = self.weights.softmax(0), vectors.split(WIDTH, dim=2)
+            return sum(weights[at] * self.norms[at](parts[at]) for at in range(layers)) + self.mark(marks)
+
+    return Mixer()
+
+
+def run(torch: Any, lstm: Any, tokens: Any, lengths: Any) -> Any:
+    """Return the outputs of an LSTM for each token. Without `lengths`, there is a single text without padding."""
+    if lengths is None:
+        return lstm(tokens)[0]
+    tools = torch.nn.utils.rnn
+    packed = tools.pack_padded_sequence(tokens, lengths, batch_first=True, enforce_sorted=False)
+    return tools.pad_packed_sequence(lstm(packed)[0], batch_first=True)[0]
+
+
+def trained(
+    torch: Any,
+    made: Any,
+    rows: Sequence[Row],
+    loss_of: Callable[[Any, list[Row]], Any],
+    epochs: int,
+    size: int,
+    rate: float,
+) -> Any:
+    """Train a network, and return it."""
+    order = random.Random(0)
+    optimiser = torch.optim.AdamW(made.parameters(), lr=rate, weight_decay=0.05)
+    steps = epochs * -(-len(rows) // size)
+    schedule = torch.optim.lr_scheduler.OneCycleLR(optimiser, rate, total_steps=steps)
+    for epoch in range(epochs):
+        began, total = time.monotonic(), 0.0
+        made.train()
+        for batch in batches(rows, size, order):
+            loss = loss_of(made, batch)
+            optimiser.zero_grad()
+            loss.backward()
+            torch.nn.utils.clip_grad_norm_(made.parameters(), 1.0)
+            optimiser.step()
+            schedule.step()
+            total += loss.item() * len(batch)
+        print(
+            f"epoch {epoch + 1} of {epochs}: loss {total / len(rows):.3f}, {time.monotonic() - began:.0f} s", flush=True
+        )
+    return made.eval()
+
+
+def write(
+    torch: Any,
+    made: Any,
+    file: Path,
+    layers: int,
+    outputs: Sequence[str],
+    about: dict[str, str],
+    *,
+    context: bool = False,
+) -> None:
+    """Write a network as an ONNX file with 8-bit weights, and `about` as its metadata."""
+    import onnx
+    from onnxruntime.quantization import QuantType, quantize_dynamic
+
+    whole = file.with_suffix(".whole.onnx")
+    example = {
+        "vectors": torch.zeros(1, 9, layers * WIDTH),
+        "marks": torch.zeros(1, 9, dtype=torch.long),
+        **({"context": torch.zeros(1, dtype=torch.long)} if context else {}),
+    }
+    free = {name: {1: "tokens"} for name in ("vectors", "marks", "chances", "denials") if name in (*example, *outputs)}
+    names = {"input_names": list(example), "output_names": list(outputs)}
+    torch.onnx.export(
+        made, tuple(example.values()), str(whole), **names, dynamic_axes=free, dynamo=False, opset_version=17
+    )
+    quantize_dynamic(str(whole), str(file), weight_type=QuantType.QInt8)
+    whole.unlink()
+    model = onnx.load(str(file))
+    onnx.helper.set_model_props(model, about)
+    onnx.save(model, str(file))
+    print(f"{file.name}: {file.stat().st_size / 1e6:.1f} MB")
+
+
+def checked(file: Path, files: Iterable[Path], command: str) -> int:
+    """Print whether a network was trained on the present files; return the exit code."""
+    import onnxruntime
+
+    about = onnxruntime.InferenceSession(str(file)).get_modelmeta().custom_metadata_map
+    same = about["sentences"] == digest(files)
+    print(f"{file.name} knows these sentences" if same else f"the sentences of {file.name} have changed: {command}")
+    return int(not same)
