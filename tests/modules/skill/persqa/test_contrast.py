@@ -88,6 +88,17 @@ def test_a_relative_of_a_relative_is_not_taken_for_a_relative_of_the_user() -> N
     assert after("nora is my brothers wife not my sister") == {"sister": ()}
 
 
+@pytest.mark.parametrize(
+    "text",
+    ["I have a dog but no garden", "I have a sister and no time", "Anna is my friend, not my sister", "no, not Leipzig",
+     "no, never in Leipzig", "sorry, not Leipzig", "no, not Leeds", "I'm not a nurse today", "I'm not just a nurse"],
+)  # fmt: skip
+def test_a_denial_of_something_else_removes_no_known_fact(text: str) -> None:
+    known = {"home": ("Leeds",), "sister": ("Rosa",), "dog": ("Rex",), "occupation": ("nurse",)}
+    changed = after(text, known, Talk().mentioning("home", ("Leeds",)))
+    assert not changed.keys() & known.keys(), changed
+
+
 ROSA = Told("Rosa", "live", "Antwerp", "your sister Rosa lives in Antwerp", who="Rosa")
 
 

@@ -71,3 +71,23 @@ def test_other_modules_learn_that_a_person_was_forgotten(file: Path) -> None:
         assert not sim.read(heard)
         sim.say("yes")
         assert sim.read(heard)
+
+
+@pytest.mark.parametrize(
+    "text",
+    [
+        "actually, keep my name",
+        "please keep it",
+        "do what you like",
+        "I love it here",
+        "I guess so",
+        "yes, but keep my name",
+        "you bet it's late",
+    ],
+)
+def test_only_a_plain_yes_deletes_anything(file: Path, look: Look, text: str) -> None:
+    with agent(file) as sim:
+        sim.say("my name is ada and i live in hannover")
+        assert meant(answers(sim, "forget me"), "forget_ask")
+        sim.say(text)
+    assert look() == {"Ada": {"lives_in": ["Hannover"]}}

@@ -13,7 +13,7 @@ _BEGIN = r"(?:^\W*|[.!?,;] |\band )(?i:"
 _END = r"(?=\s*(?:[,.!?;]|$|\band\b|\bbut\b))"
 _NAME = r"(?P<value>[^\W\d_a-z][^\s.,;!?\")]*(?: [A-Z][\w'-]+){0,3})"
 """A name begins with a capital: the normal form gives names their capitals."""
-_ANY_NAME = r"(?P<value>[^\s\d_.,;!?'\")][^\s.,;!?\")]*(?: [A-Z][\w'-]+){0,3})"
+_ANY_NAME = r"(?!not\b)(?P<value>[^\s\d_.,;!?'\")][^\s.,;!?\")]*(?: [A-Z][\w'-]+){0,3})"
 """A name of any characters: 🦊."""
 _WORDS = r"(?:an? |the )?(?P<value>[\w'-]+(?: [\w'-]+){0,2})"
 _PEOPLE = "|".join(noun for topic in TOPICS.values() if topic.kind == "people" for noun in topic.nouns)

@@ -110,6 +110,7 @@ class Reader:
                 told[topic] = before if among(value, before) else (*before, value) if TOPICS[topic].many else (value,)
         for one in self.seen.contrasts:  # "Nora is my brother's wife, not my sister"
             topic = self.noun(one.wrong)
+            told.pop(topic if topic in PEOPLE else "", None)
             named = [name for name in self.known.get(topic, ()) if name.lower() in self.tree.text.lower()]
             if topic in PEOPLE and named:
                 gone[topic] = gone.get(topic, ()) + tuple(named)
@@ -205,6 +206,7 @@ class Reader:
     def _ended(self) -> dict[str, tuple[str, ...]]:
         """Return the topics that end as a whole: *I quit my job*, *I have no hobbies*."""
         ended: dict[str, tuple[str, ...]] = {}
+        text = self.tree.text.lower()
         for said in self.seen.statements:
             whole = (
                 f"{'not ' * said.negated}{predicate_of(said)} {said.object.head or said.object.text.lower()}".strip()
@@ -212,15 +214,12 @@ class Reader:
             holds = not (said.hearsay or said.conditional or said.question or said.plan)
             if said.subject.person == "I" and holds and (topic := ENDS.get(whole)) and not self._tagged(topic):
                 ended[topic] = ()
-            topic = NOUNS.get(said.object.head, "")
-            if (
-                holds
-                and said.negated
-                and self.has(said)
-                and topic
-                and not said.object.names
-                and not self._tagged(topic)
-            ):
+            noun = said.object.text.lower().split()[-1:]
+            denied = noun and re.search(
+                rf"(?:\b(?:no|any)|n[o'’]t (?:have|got|own) an?) (?:\w+ )?{re.escape(noun[0])}\b", text
+            )
+            topic = NOUNS.get(said.object.head, "") if denied and said.negated and not said.object.names else ""
+            if topic and holds and self.has(said) and not self._tagged(topic):
                 ended[topic] = ()
         return ended
 

@@ -124,12 +124,11 @@ class _Hearing:
         if wish is not None and (wish.kind == "forget" or topic != FORGET):
             return wish
         if topic == FORGET:
-            yesno = seen.yesno if self.fresh else None  # a "yes" to something else must not delete anything
-            if seen.question is not None or not is_plain_yes(self.text):
-                yesno = None if yesno and yesno.yes else yesno  # deletion cannot be undone
-            no = yesno and (yesno.no or yesno.unsure)
-            if (yesno and (yesno.yes or no)) or not asks:
-                kind = "forget_yes" if yesno and yesno.yes else "forget_no" if no else "nothing"
+            # Deletion cannot be undone: a "yes" to something else, or one that only resembles a yes, deletes nothing.
+            yes = self.fresh and not asks and is_plain_yes(self.text)
+            no = self.fresh and not yes and (seen.yesno.no or seen.yesno.unsure)
+            if yes or no or not asks:
+                kind = "forget_yes" if yes else "forget_no" if no else "nothing"
                 return Meaning(kind, leave=self.leave)
             topic = ""  # "what's my name?" is no answer
         if (
