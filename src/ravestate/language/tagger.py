@@ -105,14 +105,14 @@ class Tagger:
                 label = (best[at] - 1) // 2
                 while after < len(best) and (
                     best[after] == 2 * label + 2
-                    or (best[after] == 2 * label + 1 and not text[spans[after - 1][1] : spans[after][0]].strip())
+                    or (best[after] == 2 * label + 1 and not text[spans[after - 1][1] : spans[after][0]].strip(" -'’"))
                 ):  # two values of one label have a comma or an "and" between them
                     after += 1
                 start, end = spans[at][0], spans[after - 1][1]
                 after_last = found[-1].end if found else 0
-                while start > after_last and text[start - 1].isalnum():
+                while start > after_last and _joins(text[start - 1]):
                     start -= 1
-                while end < len(text) and text[end].isalnum():
+                while end < len(text) and _joins(text[end]):
                     end += 1
                 score = float(chances[at:after, 2 * label + 1 : 2 * label + 3].sum(axis=1).mean())
                 denied = float(denials[at:after].mean()) > 0.5
@@ -123,3 +123,8 @@ class Tagger:
                 )
             at = after
         return found
+
+
+def _joins(letter: str) -> bool:
+    """Return whether a character stands inside a word: *Stow-on-the-Wold*."""
+    return letter.isalnum() or letter == "-"

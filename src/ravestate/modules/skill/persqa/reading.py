@@ -86,7 +86,7 @@ class Reader:
             for tag in found
             if tag.score >= SURE
             and not self._is_contrasted(tag)
-            and not (tag.negated and (NOW & self.words or _PARTLY.search(text)))  # "I'm not just a nurse"
+            and not (tag.negated and ((NOW - {"now"}) & self.words or _PARTLY.search(text)))  # "I'm not just a nurse"
             and (context or tag.text != text.strip(" .!?"))  # a bare word, such as "Hannover.", needs a question
             and not (self._describes_work(tag) or self._is_over(tag) or self._is_anothers(tag))
         )
