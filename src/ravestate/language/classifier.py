@@ -8,7 +8,7 @@ from pathlib import Path
 from .network import Network
 
 REMEMBERED = 256
-"""The number of texts whose classes a classifier keeps, because several skills ask for the same text."""
+"""The number of texts whose classes a classifier keeps, because modules may ask for a text again."""
 LONGEST = 300
 """The maximum number of characters that a classifier reads."""
 
@@ -24,7 +24,7 @@ class Classifier:
 
             classifier = Classifier(file)
             classifier.load()
-            classifier.best("Where is the station?")     # ("PLACE", 0.98)
+            classifier.best("You bet.")     # ("yes 2", 0.98)
     """
 
     def __init__(self, file: Path) -> None:

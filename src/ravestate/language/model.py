@@ -129,7 +129,8 @@ class SentenceModel:
         note_load()
 
     def _opened(self, runtime: Any, file: Path, options: Any, layers: Sequence[str]) -> Any:
-        """Return a session. If the model has no such layers, `layers` stays empty, and only the networks are missing."""
+        """Return a session that also outputs `layers`. If the model lacks them, `self.layers` is empty, and no network can
+        use this model."""
         providers = ["CPUExecutionProvider"]
         inner = [name for name in layers if name.startswith("/")]
         self.layers = list(layers)
@@ -187,9 +188,7 @@ class SentenceModel:
         import numpy as np
 
         if not self.layers:
-            raise PlatformError(
-                f"the sentence model {str(self.folder)!r} has no inner layers: remove it from the settings"
-            )
+            raise PlatformError(f"the sentence model {str(self.folder)!r} lacks the layers that the networks read")
         code = self._tokenizer.encode(*(_encodable(one) for one in (text, pair) if one is not None))
         ids, types = np.array([code.ids], dtype=np.int64), np.array([code.type_ids], dtype=np.int64)
         given = {"input_ids": ids, "attention_mask": np.ones_like(ids), "token_type_ids": types}

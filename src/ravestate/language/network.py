@@ -48,7 +48,9 @@ class Network:
         """
         base = model_in(None, self._model)
         if not base.layers:
-            raise PlatformError(f"the sentence model {self._model} has other layers: {requirement(SENTENCE_MODELS)}")
+            raise PlatformError(
+                f"the sentence model {self._model} lacks the layers that the networks read: {requirement(SENTENCE_MODELS)}"
+            )
         with self._lock:
             if self._session is None:
                 with LOADING:

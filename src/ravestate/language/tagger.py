@@ -36,9 +36,9 @@ class Tag:
 class Tagger:
     """A small recurrent network that labels the words of a text, on top of the bundled sentence model. Thread-safe.
 
-    A tool trains it on marked sentences; the module that uses it brings the file. The network reads the vectors of the
-    tokens after several layers of the encoder, and returns for each token whether a value begins there, goes on there,
-    or neither (the BIO scheme), and whether the text denies the value.
+    ``tools/networks`` trains it on marked sentences. The module that uses it contains the file. The network reads the vectors of the
+    tokens after several layers of the encoder. For each token, it says whether a value begins there, goes on there, or
+    neither (the BIO scheme). It also says whether the text denies the value.
 
     Example:
         ::
@@ -73,7 +73,7 @@ class Tagger:
 
         Args:
             text: One or more sentences in normal form.
-            context: The label for which the agent has asked, so that a fragment may be the answer.
+            context: The label of the value that the agent has just asked for, so that a fragment may be the answer.
         """
         return self._latest(text, context) if self.loaded and text.strip() else ()
 
@@ -106,7 +106,7 @@ class Tagger:
                 while after < len(best) and (
                     best[after] == 2 * label + 2
                     or (best[after] == 2 * label + 1 and not text[spans[after - 1][1] : spans[after][0]].strip(" -'’"))
-                ):  # two values of one label have a comma or an "and" between them
+                ):  # without a comma or "and" between them, two beginnings are one value
                     after += 1
                 start, end = spans[at][0], spans[after - 1][1]
                 after_last = found[-1].end if found else 0
@@ -116,11 +116,8 @@ class Tagger:
                     end += 1
                 score = float(chances[at:after, 2 * label + 1 : 2 * label + 3].sum(axis=1).mean())
                 denied = float(denials[at:after].mean()) > 0.5
-                found += (
-                    []
-                    if start < after_last
-                    else [Tag(self._network.labels[label], text[start:end], start, end, denied, score)]
-                )
+                if start >= after_last:
+                    found.append(Tag(self._network.labels[label], text[start:end], start, end, denied, score))
             at = after
         return found
 

@@ -82,6 +82,11 @@ def test_other_modules_learn_that_a_person_was_forgotten(file: Path) -> None:
         "I love it here",
         "I guess so",
         "yes, but keep my name",
+        "forget it",
+        "ok, no",
+        "ok, stop",
+        "yes, leave it",
+        "you can stop",
         "you bet it's late",
     ],
 )

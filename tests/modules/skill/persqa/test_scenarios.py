@@ -384,16 +384,18 @@ def test_the_facts_of_simultaneous_utterances_are_all_learnt(file: Path, look: L
     with agent(file) as sim:
         at_once(sim, "my name is ada", "i live in ulm", "my hobby is chess", "i work as a baker")
         assert meant(sim.said[0], "learned_name")
-        at_once(sim, "i moved to bremen", "my hobby is judo", "no, ludo", "my friend is called tom")
+        at_once(sim, "i moved to bremen", "my hobby is judo", "my dog is called rex", "my friend is called tom")
         assert dict(sim.read(persqa.facts)) == {
             "home": ("Bremen",),
-            "hobby": ("chess", "ludo"),
+            "hobby": ("chess", "judo"),
+            "dog": ("Rex",),
             "occupation": ("baker",),
             "friend": ("Tom",),
         }
     known = {
         "lives_in": ["Bremen"],
-        "has_hobby": ["chess", "ludo"],
+        "has_hobby": ["chess", "judo"],
+        "has_pet": ["Rex"],
         "works_as": ["baker"],
         "friend_of": ["Tom"],
     }

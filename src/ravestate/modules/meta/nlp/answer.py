@@ -1,7 +1,7 @@
 """Recognise answers: yes, no, or unsure.
 
-A small network (``answers.onnx``, trained in ``tools/networks``) reads the whole text. Until it is loaded, or if the
-sentence model is missing, only the words in `PLAIN` count.
+A small network (``answers.onnx``, trained in ``tools/networks``) reads the whole text. The words in `PLAIN` always
+count. Until the network is loaded, or without the sentence model, only they and openings such as *no, ...* count.
 """
 
 from __future__ import annotations
@@ -43,23 +43,25 @@ PLAIN = {
     "no 1": "not_really probably_not i_do_not_think_so rather_not",
     "unsure": "maybe perhaps i_do_not_know no_idea not_sure it_depends",
 }
-"""A class → words that are answers of this class."""
+"""A class → its answers. A low line stands for a space."""
 _PLAIN = {words.replace("_", " "): name for name, listed in PLAIN.items() for words in listed.split()}
 _OPENING = re.compile(r"\W*(yes|yeah|yep|no|nope|nah)[,.!]", re.IGNORECASE)
 """An answer before other words: *no. I have to go*."""
 _FILLER = re.compile(r"^\W*(?:(?:well|oh|ah|uh|um|er|hm+|so)\b[\s,.!…]*)+(?=\w)", re.IGNORECASE)
 """Words without meaning before an answer."""
 _RETURNED = re.compile(r"[\s,.!;]+(?:and|what about|how about) (?:you|yours|yourself)\W*$", re.IGNORECASE)
-"""A question that is returned after an answer: *yes, and you?*."""
+"""A question back, after an answer: *yes, and you?*."""
 _REPEATED = re.compile(r"\b(\w+)(?:[\s,]+\1\b)+", re.IGNORECASE)
 LONGEST = 400
 """The maximum number of characters that are read, because answers are short."""
-_PLAIN_YES = re.compile(
-    r"\W*(?:👍|(?:(?:oh|well|ok|okay|so)\W+)*(?:yes|yeah|yep|yup|yea|aye|sure|ok|okay|of course|certainly|absolutely|definitely|"
-    r"please do|do it|do that|go ahead|i am sure|i'm sure|delete|forget|you may|you can|i agree)(?!\w))",
-    re.IGNORECASE,
+_YES = (
+    "yes|yeah|yep|yup|yea|aye|sure|ok|okay|of course|certainly|absolutely|definitely|please do|do it|do that|go ahead|i am sure|"
+    "i'm sure|you may|you can|i agree|(?:delete|erase|remove) (?:me|it|that|everything|it all|all of it|all)|"
+    "forget (?:me|everything|all of it)|👍"
 )
-_REFUSES = re.compile(r"\b(?:not|never|do ?nt|or no|keep|but|wait)\b|n['’]t\b", re.IGNORECASE)
+_BEGINS = re.compile(rf"\W*(?:(?:oh|well|so)\W+)*(?:{_YES})(?!\w)", re.IGNORECASE)
+_ONLY = re.compile(rf"{_BEGINS.pattern}(?:\W+(?:{_YES}|please|thanks|thank you|now|all|everything))*\W*", re.IGNORECASE)
+_REFUSES = re.compile(r"\b(?:no|not|never|do ?nt|nothing|stop|cancel|leave|wait)\b|n['’]t\b", re.IGNORECASE)
 _EMOJI = re.compile(r"\W*([👍👎])")
 
 
@@ -83,12 +85,17 @@ def yesno_of(text: str) -> YesNo:
     return YesNo(int(strength) if meaning == "yes" else 0, int(strength) if meaning == "no" else 0, meaning == "unsure")
 
 
-def is_plain_yes(text: str) -> bool:
-    """Return whether a text begins with a plain *yes*, and denies and keeps nothing.
+def is_only_yes(text: str) -> bool:
+    """Return whether a text is a clear *yes* and nothing else: *yes, delete it please*.
 
     Ask for it before a step that cannot be undone: the network may mistake *I love it here* for a yes.
     """
-    return _PLAIN_YES.match(text) is not None and _REFUSES.search(text) is None
+    return _ONLY.fullmatch(text) is not None
+
+
+def begins_with_yes(text: str) -> bool:
+    """Return whether a text begins with a clear *yes*, and has no word of refusal, such as *not* or *wait*."""
+    return _BEGINS.match(text) is not None and _REFUSES.search(text) is None
 
 
 @cache

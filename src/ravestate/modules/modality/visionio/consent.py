@@ -8,7 +8,7 @@ from dataclasses import replace
 import ravestate as rs
 from ravestate.errors import RavestateError
 from ravestate.modules import idle, interloc, ontology, rawio, verbaliser
-from ravestate.modules.meta.nlp.answer import is_plain_yes, yesno_of
+from ravestate.modules.meta.nlp.answer import begins_with_yes, yesno_of
 from ravestate.modules.meta.verbaliser.intents import Intent
 
 from . import people
@@ -91,7 +91,7 @@ async def listen(ctx: rs.RuleContext) -> None:
     if wish:
         ctx.emit(withdrawn if wish == "forget" else agreed, front.key if front else "")
     elif question is not None and answer and not answer.unsure:
-        if not answer.no and not is_plain_yes(text):
+        if not answer.no and not begins_with_yes(text):
             return  # "I love it here" is no consent
         ctx.emit(refused if answer.no else agreed, question.key)
     else:

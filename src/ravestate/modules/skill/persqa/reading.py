@@ -1,6 +1,6 @@
 """The facts that an utterance tells or asks for.
 
-The tagger finds the values that the user states or denies. The statements of the utterance show the user's questions.
+The tagger finds the values that the user states or denies. The statements give the questions, and the topics that end as a whole (*I quit my job*).
 """
 
 from __future__ import annotations
@@ -24,10 +24,10 @@ SURE = 0.5
 """The least confidence of a value."""
 CLEAR = 0.9
 """The confidence at which a sentence tells a value whatever the agent has asked."""
-OPENING = 20
+OPENING = 30
 """The maximum number of characters before a name that only its words show: *hello there, my name is*."""
 LONGEST = 1_000
-"""The maximum number of characters that the tagger reads."""
+"""The tagger reads no text that is longer than this number of characters."""
 FEW = 2
 """The maximum number of words that are a value although the tagger does not know them."""
 MINE = frozenset(["mine", "ours"])

@@ -9,7 +9,7 @@ from typing import Literal
 
 from ravestate.language.feelings import SORROWS
 from ravestate.modules import nlp
-from ravestate.modules.meta.nlp.answer import is_plain_yes
+from ravestate.modules.meta.nlp.answer import is_only_yes
 
 from . import kinds
 from .answers import spelled_out
@@ -125,7 +125,7 @@ class _Hearing:
             return wish
         if topic == FORGET:
             # Deletion cannot be undone: a "yes" to something else, or one that only resembles a yes, deletes nothing.
-            yes = self.fresh and not asks and is_plain_yes(self.text)
+            yes = self.fresh and not asks and is_only_yes(self.text)
             no = self.fresh and not yes and (seen.yesno.no or seen.yesno.unsure)
             if yes or no or not asks:
                 kind = "forget_yes" if yes else "forget_no" if no else "nothing"
@@ -253,7 +253,7 @@ class _Hearing:
                 "unsure" if yesno.unsure else "declined" if declined else "none", topic=topic, aloud=not self.sum
             )
         mere = (
-            is_plain_yes(self.text)
+            is_only_yes(self.text)
             and len(self.text.split()) <= BRIEF
             and not {"acknowledgement", "praise", "joke"} & set(seen.acts)
         )
