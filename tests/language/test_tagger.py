@@ -72,6 +72,6 @@ def test_a_broken_file_says_so(tmp_path: Path) -> None:
 
 
 def test_the_bundled_model_also_returns_inner_layers() -> None:
-    spans, _, vectors = model_in(None, BUNDLED).token_vectors("Hello there")
+    spans, vectors = model_in(None, BUNDLED).token_vectors("Hello there")
     assert [("Hello there"[start:end]) for start, end in spans] == ["", "Hello", "there", ""]
     assert vectors.shape == (4, len(LAYERS[BUNDLED]) * 384)

@@ -11,42 +11,25 @@ from __future__ import annotations
 
 import sys
 from collections.abc import Sequence
-from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
 from shared import SRC, WIDTH, Row, checked, digest, mixer, padded, run, trained, write
 
-from ravestate.language import encoder
 from ravestate.language.lexicon import load_lexicon
 from ravestate.language.normal import normalise
 
 HERE = Path(__file__).parent
-HIDDEN = 128
-BATCH, RATE = 64, 2e-3
+LAYERS, HIDDEN, DROPOUT = 5, 128, 0.4
+EPOCHS, BATCH, RATE = 14, 64, 2e-3
+OUT = {"answers": SRC / "modules" / "meta" / "nlp" / "answers.onnx"}
 
 
-@dataclass(frozen=True)
-class Task:
-    """A classifier to train."""
-
-    out: Path
-    model: str
-    layers: int
-    epochs: int
-    dropout: float = 0.4
-
-
-TASKS = {
-    "answers": Task(SRC / "modules" / "meta" / "nlp" / "answers.onnx", encoder.BUNDLED, 5, 14),
-}
-
-
-def cases(files: Sequence[Path]) -> dict[tuple[str, ...], str]:
-    """Return the texts, or pairs of texts, of some files, each with its class."""
+def cases(files: Sequence[Path]) -> dict[str, str]:
+    """Return the texts of some files, each with its class."""
     lines = [line for file in files for line in file.read_text(encoding="utf-8").splitlines()]
     rows = (line.split("\t") for line in lines if "\t" in line and not line.startswith("#"))
-    return {tuple(text.strip() for text in row[:-1]): row[-1].strip() for row in rows}
+    return {text.strip(): name.strip() for text, name in rows}
 
 
 def normal_form(text: str) -> str:
@@ -55,22 +38,16 @@ def normal_form(text: str) -> str:
     return written if "?" in text else written.replace("?", ".")
 
 
-def row_of(texts: tuple[str, ...], model: str) -> Row:
-    """Return a text in its normal form, or a pair of texts as it is, with the vectors of its tokens."""
-    first, *pair = texts
-    return Row(first, pair[0], model) if pair else Row(normal_form(first), model=model, longest=64)
-
-
-def network(torch: Any, classes: int, task: Task) -> Any:
+def network(torch: Any, classes: int) -> Any:
     """Return a new network: a bidirectional LSTM, of whose outputs it takes the maximum, the mean, and a weighted mean."""
     nn = torch.nn
 
     class Network(nn.Module):  # type: ignore[misc, name-defined]
         def __init__(self) -> None:
             super().__init__()
-            self.mixer = mixer(torch, task.layers)
+            self.mixer = mixer(torch, LAYERS)
             self.lstm = nn.LSTM(WIDTH, HIDDEN, 1, batch_first=True, bidirectional=True)
-            self.drop = nn.Dropout(task.dropout)
+            self.drop = nn.Dropout(DROPOUT)
             self.weight, self.out = nn.Linear(2 * HIDDEN, 1), nn.Linear(6 * HIDDEN, classes)
 
         def forward(self, vectors: Any, marks: Any, lengths: Any = None) -> Any:
@@ -90,20 +67,21 @@ def network(torch: Any, classes: int, task: Task) -> Any:
 
 def main(arguments: Sequence[str]) -> int:
     """Train and write, or check; return the exit code."""
-    if not arguments or arguments[0] not in TASKS:
+    if not arguments or arguments[0] not in OUT:
         print(__doc__)
         return 2
-    name, task = arguments[0], TASKS[arguments[0]]
+    name = arguments[0]
+    out = OUT[name]
     files = sorted((HERE / name).glob("*.tsv"))
     if "--check" in arguments:
-        return checked(task.out, files, f"python tools/networks/sentences.py {name}")
+        return checked(out, files, f"python tools/networks/sentences.py {name}")
     import torch
 
     torch.manual_seed(0)
     load_lexicon()
     known = cases(files)
     labels = sorted(set(known.values()))
-    rows = [row_of(texts, task.model) for texts in known]
+    rows = [Row(normal_form(text), longest=64) for text in known]
     for row, label in zip(rows, known.values(), strict=True):
         row.classes = [labels.index(label)]
     print(f"{len(rows)} sentences, {len(labels)} classes", flush=True)
@@ -113,9 +91,9 @@ def main(arguments: Sequence[str]) -> int:
         wanted = torch.tensor([row.classes[0] for row in batch])
         return torch.nn.functional.cross_entropy(made(vectors, marks, lengths), wanted, label_smoothing=0.1)
 
-    made = trained(torch, network(torch, len(labels), task), rows, loss_of, task.epochs, BATCH, RATE)
+    made = trained(torch, network(torch, len(labels)), rows, loss_of, EPOCHS, BATCH, RATE)
     about = {"labels": ";".join(labels), "sentences": digest(files)}
-    write(torch, made, task.out, task.layers, ["classes"], about)
+    write(torch, made, out, LAYERS, ["classes"], about)
     return 0
 
 

@@ -20,14 +20,14 @@ WIDTH = 384
 
 
 class Row:
-    """A text, or a pair of texts, as a network sees it: the vectors of its tokens, and the classes to learn."""
+    """A text as a network sees it: the vectors of its tokens, and the classes to learn."""
 
-    def __init__(self, text: str, pair: str | None = None, model: str = BUNDLED, longest: int = 96) -> None:
-        spans, types, vectors = model_in(None, model).token_vectors(text, pair)
+    def __init__(self, text: str, longest: int = 96) -> None:
+        spans, vectors = model_in(None, BUNDLED).token_vectors(text)
         self.spans = spans[:longest]
         self.vectors = vectors[:longest].astype(np.float16)
         """The vectors: shape (tokens, layers * WIDTH)."""
-        capitals = [int(start < end and text[start].isupper()) for start, end in spans] if pair is None else types
+        capitals = [int(start < end and text[start].isupper()) for start, end in spans]
         self.marks = capitals[:longest]
         self.context = 0
         self.classes: list[int] = []

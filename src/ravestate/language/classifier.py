@@ -13,7 +13,7 @@ LONGEST = 300
 """The maximum number of characters that a classifier reads."""
 
 
-class Classifier:
+class Classifier(Network):
     """A small recurrent network that reads a whole text. Thread-safe.
 
     `Matcher` learns from a few examples when the program starts. A classifier needs thousands of examples and a
@@ -29,21 +29,8 @@ class Classifier:
 
     def __init__(self, file: Path) -> None:
         """Choose a trained network; load nothing yet."""
-        self._network = Network(file)
+        super().__init__(file)
         self._latest = lru_cache(REMEMBERED)(self._best)
-
-    @property
-    def loaded(self) -> bool:
-        """Whether the classifier is ready."""
-        return self._network.loaded
-
-    def load(self) -> None:
-        """Load the encoder and the network, once.
-
-        Raises:
-            PlatformError: The sentence model is missing (`ModelMissing`), or a file is broken.
-        """
-        self._network.load()
 
     def best(self, text: str) -> tuple[str, float]:
         """Return the likeliest class of a text in normal form, and its probability; an empty class before `load`.
@@ -53,6 +40,6 @@ class Classifier:
         return self._latest(text) if self.loaded and text.strip() else ("", 0.0)
 
     def _best(self, text: str) -> tuple[str, float]:
-        _, (chances,) = self._network.run(text[:LONGEST])
+        _, (chances,) = self.run(text[:LONGEST])
         best = int(chances[0].argmax())
-        return self._network.labels[best], float(chances[0][best])
+        return self.labels[best], float(chances[0][best])

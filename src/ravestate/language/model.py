@@ -29,7 +29,6 @@ LAYERS = {
         *(f"/encoder/layer.{number}/output/LayerNorm/Add_1_output_0" for number in (2, 5, 7, 9)),
         "last_hidden_state",
     ),
-    "reranker_en": tuple(f"/bert/encoder/layer.{number}/output/LayerNorm/Add_1_output_0" for number in (2, 5, 8, 11)),
 }
 """Bundled model → values in its graph that it also returns: the tokens' vectors after some of its twelve layers. The
 inner layers say more about single words than the last layer, which is trained for whole sentences."""
@@ -173,27 +172,21 @@ class SentenceModel:
             given = {"input_ids": ids, "attention_mask": mask, "token_type_ids": types}
             yield indices, self._session.run([self._output], {name: given[name] for name in self._inputs})[0], mask
 
-    def token_vectors(
-        self, text: str, pair: str | None = None
-    ) -> tuple[list[tuple[int, int]], list[int], NDArray[Any]]:
-        """Return the spans of the tokens, the number of each token's text (0 or 1), and the tokens' vectors.
+    def token_vectors(self, text: str) -> tuple[list[tuple[int, int]], NDArray[Any]]:
+        """Return the spans of the tokens in a text, and the tokens' vectors.
 
-        The vectors of a token after each of `layers` lie side by side: shape (tokens, layers * d). The first
-        token and the last one of each text stand for no word, and have an empty span.
-
-        Args:
-            text: A text.
-            pair: A second text, which the model reads together with the first.
+        The vectors of a token after each of `layers` lie side by side: shape (tokens, layers * d). The first token and
+        the last one stand for no word, and have an empty span.
         """
         import numpy as np
 
         if not self.layers:
             raise PlatformError(f"the sentence model {str(self.folder)!r} lacks the layers that the networks read")
-        code = self._tokenizer.encode(*(_encodable(one) for one in (text, pair) if one is not None))
+        code = self._tokenizer.encode(_encodable(text))
         ids, types = np.array([code.ids], dtype=np.int64), np.array([code.type_ids], dtype=np.int64)
         given = {"input_ids": ids, "attention_mask": np.ones_like(ids), "token_type_ids": types}
         found = self._session.run(self.layers, {name: given[name] for name in self._inputs})
-        return code.offsets, code.type_ids, np.concatenate([layer[0] for layer in found], axis=1)
+        return code.offsets, np.concatenate([layer[0] for layer in found], axis=1)
 
 
 def _added_outputs(names: Sequence[str]) -> bytes:

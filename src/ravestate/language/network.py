@@ -22,15 +22,14 @@ if TYPE_CHECKING:
 class Network:
     """An ONNX file that reads the vectors of a text's tokens, after several layers of the encoder. Thread-safe."""
 
-    def __init__(self, file: Path, model: str = BUNDLED) -> None:
+    def __init__(self, file: Path) -> None:
         """Choose a file; load nothing yet.
 
         Args:
-            file: An ONNX file with the inputs ``vectors`` (1, tokens, layers * d), ``marks`` (1, tokens) and perhaps
+            file: An ONNX file with the inputs ``vectors`` (1, tokens, layers * d), ``marks`` (1, tokens: 1 for a capital) and perhaps
                 ``context`` (1,). Its metadata has ``labels`` with semicolons between them.
-            model: The bundled model whose vectors the network reads.
         """
-        self._file, self._model = file, model
+        self._file = file
         self._lock = threading.Lock()
         self._session: Any = None
         self.labels: list[str] = []
@@ -46,10 +45,10 @@ class Network:
         Raises:
             PlatformError: The sentence model is missing (`ModelMissing`), or a file is broken.
         """
-        base = model_in(None, self._model)
+        base = model_in(None, BUNDLED)
         if not base.layers:
             raise PlatformError(
-                f"the sentence model {self._model} lacks the layers that the networks read: {requirement(SENTENCE_MODELS)}"
+                f"the sentence model {BUNDLED} lacks the layers that the networks read: {requirement(SENTENCE_MODELS)}"
             )
         with self._lock:
             if self._session is None:
@@ -76,21 +75,17 @@ class Network:
         self.labels = labels.split(";")
         return session
 
-    def run(
-        self, text: str, pair: str | None = None, context: int | None = None
-    ) -> tuple[list[tuple[int, int]], list[NDArray[Any]]]:
+    def run(self, text: str, context: int | None = None) -> tuple[list[tuple[int, int]], list[NDArray[Any]]]:
         """Return the span of each token in a text, and the outputs of the network for the text.
 
         Args:
             text: One or more sentences in normal form.
-            pair: A second text. Then the marks of the tokens say to which text they belong; otherwise, which begin with
-                a capital.
             context: The number of the context, if the network has contexts.
         """
         import numpy as np
 
-        spans, types, vectors = model_in(None, self._model).token_vectors(text, pair)
-        marks = types if pair is not None else [int(start < end and text[start].isupper()) for start, end in spans]
+        spans, vectors = model_in(None, BUNDLED).token_vectors(text)
+        marks = [int(start < end and text[start].isupper()) for start, end in spans]
         given = {"vectors": vectors[None], "marks": np.array([marks])}
         if context is not None:
             given["context"] = np.array([context])

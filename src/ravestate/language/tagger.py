@@ -33,11 +33,10 @@ class Tag:
     """The confidence, 0 to 1: the mean over the tokens."""
 
 
-class Tagger:
+class Tagger(Network):
     """A small recurrent network that labels the words of a text, on top of the bundled sentence model. Thread-safe.
 
-    ``tools/networks`` trains it on marked sentences. The module that uses it contains the file. The network reads the vectors of the
-    tokens after several layers of the encoder. For each token, it says whether a value begins there, goes on there, or
+    ``tools/networks`` trains it on marked sentences. The module that uses it contains the file. For each token, it says whether a value begins there, goes on there, or
     neither (the BIO scheme). It also says whether the text denies the value.
 
     Example:
@@ -50,21 +49,8 @@ class Tagger:
 
     def __init__(self, file: Path) -> None:
         """Choose a trained network; load nothing yet."""
-        self._network = Network(file)
+        super().__init__(file)
         self._latest = lru_cache(REMEMBERED)(self._tags)
-
-    @property
-    def loaded(self) -> bool:
-        """Whether the tagger is ready."""
-        return self._network.loaded
-
-    def load(self) -> None:
-        """Load the encoder and the network, once.
-
-        Raises:
-            PlatformError: The sentence model is missing (`ModelMissing`), or a file is broken.
-        """
-        self._network.load()
 
     def tags(self, text: str, context: str = "") -> tuple[Tag, ...]:
         """Return the tags of a text in their order; nothing before `load`.
@@ -78,9 +64,8 @@ class Tagger:
         return self._latest(text, context) if self.loaded and text.strip() else ()
 
     def _tags(self, text: str, context: str) -> tuple[Tag, ...]:
-        network = self._network
-        asked = network.labels.index(context) + 1 if context in network.labels else 0
-        spans, (chances, denials) = network.run(text, context=asked)
+        asked = self.labels.index(context) + 1 if context in self.labels else 0
+        spans, (chances, denials) = self.run(text, asked)
         return tuple(self._decoded(text, spans, chances[0], denials[0]))
 
     def _decoded(
@@ -117,7 +102,7 @@ class Tagger:
                 score = float(chances[at:after, 2 * label + 1 : 2 * label + 3].sum(axis=1).mean())
                 denied = float(denials[at:after].mean()) > 0.5
                 if start >= after_last:
-                    found.append(Tag(self._network.labels[label], text[start:end], start, end, denied, score))
+                    found.append(Tag(self.labels[label], text[start:end], start, end, denied, score))
             at = after
         return found
 
