@@ -1,4 +1,4 @@
-"""The blind sets of language understanding share no sentence with examples, development sets or tests."""
+"""The sets that measure unseen sentences share none with examples, tests, or the training of networks."""
 
 from __future__ import annotations
 
@@ -18,6 +18,9 @@ from repo.words import nodes
 ROOT = Path(__file__).parents[2]
 BLIND = ROOT / "tests" / "quality" / "blind"
 _SITUATION = re.compile(r"\[[^\]]*\] ")
+_MARK = re.compile(r"\[([^\[\]]*):[^\]]*\]")
+"""A marked value: ``[Leeds:home]``."""
+TRAINING = ROOT / "tools" / "networks"
 LONGEST = 300
 
 
@@ -39,6 +42,10 @@ def _sentences(file: Path) -> Iterator[str]:
         for line in text.splitlines():
             if line.strip() and not line.startswith("#"):
                 yield _SITUATION.sub("", line.partition("\t")[0])
+    elif file.suffix == ".txt":
+        for line in text.splitlines():
+            if line.strip() and not line.startswith("#"):
+                yield _MARK.sub(r"\1", _SITUATION.sub("", line))
     elif file.suffix == ".yaml":
         yield from _strings(load_yaml(text, file.name))
     else:
@@ -52,6 +59,7 @@ def known() -> dict[str, Path]:
     """Return the plain form of every sentence outside the blind sets, with its file."""
     files = [*ROOT.glob("src/**/*.yaml"), *ROOT.glob("examples/**/*.yaml"), *ROOT.glob("tests/**/*.yaml")]
     files += [*ROOT.glob("tests/**/*.tsv"), *ROOT.glob("tests/**/*.py"), *ROOT.glob("src/**/*.py")]
+    files += [*ROOT.glob("tests/quality/*.txt")]
     seen = (file for file in files if BLIND not in file.parents)
     found = {plain(sentence): file for file in seen for sentence in _sentences(file)}
     for file in ROOT.glob("src/**/bank/*.tsv"):
@@ -59,6 +67,21 @@ def known() -> dict[str, Path]:
             if line.strip() and not line.startswith("#"):
                 found |= {plain(said): file for said in line.split("\t")[1].split("|")}
     return found
+
+
+@pytest.mark.parametrize(
+    ("name", "training"),
+    [
+        ("marked_rows.txt", "facts"),
+        ("blind/facts.tsv", "facts"),
+        ("answers_fresh_rows.tsv", "answers"),
+        ("blind/answers.tsv", "answers"),
+    ],
+)
+def test_a_set_of_unseen_sentences_shares_none_with_the_training(name: str, training: str) -> None:
+    learnt = {plain(text) for file in (TRAINING / training).iterdir() for text in _sentences(file)}
+    shared = [text for text in _sentences(BLIND.parent / name) if plain(text) in learnt]
+    assert len(shared) == 0, f"{len(shared)} of {name}"  # the message shows no sentence
 
 
 def _asked(name: str) -> list[str]:

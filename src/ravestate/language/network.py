@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import os
 import threading
+from functools import lru_cache
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
@@ -17,6 +18,10 @@ from .model import model_in
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray
+
+
+LATEST = 8
+"""The number of texts whose vectors are kept, because several networks read one utterance."""
 
 
 class Network:
@@ -84,9 +89,14 @@ class Network:
         """
         import numpy as np
 
-        spans, vectors = model_in(None, BUNDLED).token_vectors(text)
+        spans, vectors = _vectors(text)
         marks = [int(start < end and text[start].isupper()) for start, end in spans]
         given = {"vectors": vectors[None], "marks": np.array([marks])}
         if context is not None:
             given["context"] = np.array([context])
         return spans, self._session.run(None, given)
+
+
+@lru_cache(LATEST)
+def _vectors(text: str) -> tuple[list[tuple[int, int]], NDArray[Any]]:
+    return model_in(None, BUNDLED).token_vectors(text)
