@@ -17,7 +17,7 @@ from ravestate.modules import emotion
 from ravestate.modules.meta.nlp import Settings
 
 LABELLED = (
-    "questions_rows", "kinds_rows", "yesno_rows", "answers_rows", "answers_fresh_rows", "intents_rows", "quiet_rows", "emotion_rows", "feelings_rows", "acts_rows", "flags_rows",
+    "questions_rows", "kinds_rows", "kinds_fresh_rows", "yesno_rows", "answers_rows", "answers_fresh_rows", "intents_rows", "quiet_rows", "emotion_rows", "feelings_rows", "acts_rows", "flags_rows",
 )  # fmt: skip
 SETS = ("triples_rows", "typed_rows", *LABELLED)
 
@@ -55,6 +55,7 @@ def feelings(text: str) -> str:
 SEE: dict[str, Callable[[str], str]] = {
     "questions_rows": modules.questions,
     "kinds_rows": modules.questions,
+    "kinds_fresh_rows": modules.questions,
     "yesno_rows": modules.yesno,
     "answers_rows": modules.yesno,
     "answers_fresh_rows": modules.yesno,
@@ -104,6 +105,7 @@ def measured(name: str) -> Result:
     if name in (
         "questions_rows",
         "kinds_rows",
+        "kinds_fresh_rows",
         "answers_rows",
         "answers_fresh_rows",
         "intents_rows",

@@ -19,7 +19,7 @@ from ravestate.modules.meta.nlp import QuestionWord, Settings, YesNo
 from ravestate.modules.meta.nlp.analysis import MATCHERS, Analysis, analyse
 from ravestate.modules.meta.nlp.answer import answers
 from ravestate.modules.meta.nlp.clause import Clause
-from ravestate.modules.meta.nlp.inquiry import question_of
+from ravestate.modules.meta.nlp.inquiry import kinds, question_of
 from ravestate.modules.meta.nlp.pipeline import TOGETHER, Pipeline, pipeline
 from ravestate.modules.meta.nlp.statements import statements_of
 from ravestate.modules.meta.nlp.tree import Tree
@@ -31,7 +31,7 @@ FLAGS = ("negated", "past", "hearsay", "conditional", "plan", "question", "reque
 
 
 def analysed(text: str) -> Analysis:
-    return _analysed(text, (*(bundled_matcher(name).loaded for name in MATCHERS), answers().loaded))
+    return _analysed(text, (*(bundled_matcher(name).loaded for name in MATCHERS), answers().loaded, kinds().loaded))
 
 
 @cache
@@ -87,7 +87,9 @@ def flags(text: str) -> str:
 
 def question(text: str) -> QuestionWord | None:
     """Return the kind of question that nlp finds; None if a text asks nothing."""
-    return question_of(_read(text)[0])
+    kinds().load()
+    read = _read(text)[0].text
+    return question_of(read if "?" in text else read.replace("?", "."))
 
 
 def questions(text: str) -> str:

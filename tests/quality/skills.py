@@ -15,6 +15,7 @@ from quality import measure, modules
 from quality.modules import analysed
 from ravestate.language.acts import heard, only
 from ravestate.language.matcher import bundled_matcher
+from ravestate.modules.meta.nlp import inquiry
 from ravestate.modules.meta.nlp.analysis import MATCHERS
 from ravestate.modules.meta.nlp.answer import answers
 from ravestate.modules.skill.agentqa.life_file import read_life
@@ -87,6 +88,7 @@ def load() -> None:
     for name in MATCHERS:
         bundled_matcher(name).load()
     answers().load()
+    inquiry.kinds().load()
     kinds.load()
 
 

@@ -28,6 +28,7 @@ FLOORS = {
 LABELS = {
     "questions_rows": {"PERSON", "PLACE", "OBJECT", "FORM", "TIME", "REASON", "AMOUNT", "YES_NO", "-"},
     "kinds_rows": {"PERSON", "PLACE", "OBJECT", "FORM", "TIME", "REASON", "AMOUNT", "YES_NO", "-"},
+    "kinds_fresh_rows": {"PERSON", "PLACE", "OBJECT", "FORM", "TIME", "REASON", "AMOUNT", "YES_NO", "-"},
     "answers_rows": {"yes 2", "yes 1", "no 2", "no 1", "unsure", "-"},
     "answers_fresh_rows": {"yes 2", "yes 1", "no 2", "no 1", "unsure", "-"},
     "yesno_rows": {"yes 2", "yes 1", "no 2", "no 1", "unsure", "-"},

@@ -31,6 +31,7 @@ class Row:
         self.marks = capitals[:longest]
         self.context = 0
         self.classes: list[int] = []
+        self.wrong: list[int] = []
         self.denied: list[float] = []
 
     def __len__(self) -> int:

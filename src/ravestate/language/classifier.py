@@ -9,6 +9,8 @@ from .network import Network
 
 REMEMBERED = 256
 """The number of texts whose classes a classifier keeps, because modules may ask for a text again."""
+RANKED = 5
+"""The number of classes that a classifier returns at most."""
 LONGEST = 300
 """The maximum number of characters that a classifier reads."""
 
@@ -30,16 +32,20 @@ class Classifier(Network):
     def __init__(self, file: Path) -> None:
         """Choose a trained network; load nothing yet."""
         super().__init__(file)
-        self._latest = lru_cache(REMEMBERED)(self._best)
+        self._latest = lru_cache(REMEMBERED)(self._ranked)
 
     def best(self, text: str) -> tuple[str, float]:
         """Return the likeliest class of a text in normal form, and its probability; an empty class before `load`.
 
         A text takes about 4 ms on one core.
         """
-        return self._latest(text) if self.loaded and text.strip() else ("", 0.0)
+        return next(iter(self.ranked(text)), ("", 0.0))
 
-    def _best(self, text: str) -> tuple[str, float]:
+    def ranked(self, text: str) -> tuple[tuple[str, float], ...]:
+        """Return the likeliest classes of a text in normal form with their probabilities, at most `RANKED`; none before `load`."""
+        return self._latest(text) if self.loaded and text.strip() else ()
+
+    def _ranked(self, text: str) -> tuple[tuple[str, float], ...]:
         _, (chances,) = self.run(text[:LONGEST])
-        best = int(chances[0].argmax())
-        return self.labels[best], float(chances[0][best])
+        order: list[int] = (-chances[0]).argsort(kind="stable")[:RANKED].tolist()
+        return tuple((self.labels[place], float(chances[0][place])) for place in order)

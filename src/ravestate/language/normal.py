@@ -42,6 +42,11 @@ class Normal:
         return start < end and self.origin[start] == self.origin[end]
 
     @property
+    def unguessed(self) -> str:
+        """The normal form without added question marks. The networks read it, because an added mark is only a guess."""
+        return self.text if "?" in self.original else self.text.replace("?", ".")
+
+    @property
     def typed(self) -> str:
         """The normal form with the user's capitals: a word that differs only in capitals stays as the user typed it."""
         if self.text == self.original:

@@ -35,7 +35,7 @@ def test_homework_after_do_is_read_as_a_noun(reader: Pipeline) -> None:
 def test_a_question_tag_turns_a_statement_into_a_question_and_adds_no_triple(text: str, tag: str) -> None:
     tree, _ = pipeline("").read(text + tag)
     (plain,), (tagged,) = statements_of(pipeline("").read(text)[0]), statements_of(tree)
-    assert question_of(tree) is QuestionWord.YES_NO
+    assert question_of(tree.text) is QuestionWord.YES_NO
     assert tagged.triple == plain.triple
     assert tagged.question and not tagged.negated
 

@@ -7,6 +7,7 @@ import pytest
 from ravestate.language.matcher import bundled_matcher
 from ravestate.modules.meta.nlp.analysis import MATCHERS
 from ravestate.modules.meta.nlp.answer import answers
+from ravestate.modules.meta.nlp.inquiry import kinds
 from ravestate.modules.meta.nlp.pipeline import pipeline
 from ravestate.modules.skill.charades import understanding
 
@@ -17,5 +18,6 @@ def reader() -> None:
     pipeline("").load()
     understanding.load()
     answers().load()
+    kinds().load()
     for name in MATCHERS:
         bundled_matcher(name).load()

@@ -158,9 +158,7 @@ def analyse(
     if reading is not None and written is not None:
         question, yesno = reading.question_word, reading.yesno
     else:
-        question = question_of(tree, parsed)
-        # The normal form may add question marks to the user's text. These are guesses, so do not use them here.
-        yesno = yesno_of(normal.text if "?" in text else normal.text.replace("?", "."))
+        question, yesno = question_of(normal.unguessed), yesno_of(normal.unguessed)
     closing = closing_of(tree, sentences)
     meant = [closing.text] if closing is not None and closing.remarks else sentences
     return Analysis(

@@ -16,6 +16,7 @@ from ravestate.modules import interloc, rawio
 from . import names
 from .analysis import MATCHERS, analyse
 from .answer import answers
+from .inquiry import kinds
 from .intent import intent_matcher
 from .names import Settings, module
 from .pipeline import pipeline
@@ -42,6 +43,7 @@ def learn(ctx: rs.RuleContext) -> None:
         for name in MATCHERS:
             bundled_matcher(name).load()
         answers().load()
+        kinds().load()
         bundled_moves().load()
     except ModelMissing as error:
         warn_once(ctx.log, error)

@@ -91,7 +91,7 @@ class Parse:
 def parse(text: str) -> Parse:
     """Parse a text with the pipeline of nlp. Recent parses are kept, because several readings contain the same text."""
     tree, entities = pipeline("").read(printable(text))
-    return parsed(tree, entities, question_of(tree))
+    return parsed(tree, entities, question_of(tree.text))
 
 
 def parsed(tree: Tree, entities: Sequence[Entity], kind: QuestionWord | None) -> Parse:

@@ -10,7 +10,7 @@ applies only after a reply of that line. There are three levels. Lines with ``#`
 from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import lru_cache
 from importlib.resources import files
 
@@ -30,6 +30,8 @@ More than half of such entries suit: if their other sentences differ from the ut
 ANSWER, EXACTLY = -10.3, -8.6
 """The minimum scores (logits) of answers: of advice, which suits many questions, and of answers that must be exact. An
 answer to another question from the same area of life scores -10 to -11."""
+WORTH = 0.25
+"""The minimum rough estimate of the probability at which the cross-encoder computes it exactly."""
 MOST = 5
 """The maximum number of entries whose probability is computed."""
 TONES = ("sad", "angry", "glad", "tired")
@@ -95,7 +97,8 @@ class Bank:
     def similar(self, sentences: Sequence[str], utterance: str, *, roughly: bool = False) -> list[Found]:
         """Return the entries that resemble a sentence of an utterance, the most suitable first. No entry comes twice.
 
-        With `roughly`, the cross-encoder is not used, so this takes about 5 ms instead of 50 ms.
+        With `roughly`, or if no entry is similar enough, the cross-encoder is not used. Then this takes about 5 ms, and
+        up to 50 ms otherwise.
         """
         return list(self._ranked(tuple(sentences), utterance, roughly, self.index.loaded))
 
@@ -129,17 +132,21 @@ class Bank:
     def _fits(self, found: Sequence[tuple[int, Near]], utterance: str, roughly: bool) -> list[float]:
         if not self.index.loaded:
             return [1.0] * len(found)  # before `load`, only equal sentences are found
-        pairs = [(text, utterance) for place, _ in found for text in self.moments[place].examples]
-        scores = iter([] if roughly else self._judge.score_pairs(pairs).tolist())
+        groups = [self.moments[place].examples for place, _ in found]
         places = [at for place, _ in found for at in self._places[self.moments[place].name]]
         meanings = iter(self.index.similarities(utterance, places))
+        evidence = [
+            Evidence(near.score, [next(meanings) for _ in texts])
+            for (_, near), texts in zip(found, groups, strict=True)
+        ]
+        worth = [not roughly and one.probability() >= WORTH for one in evidence]
+        pairs = [(text, utterance) for texts, judged in zip(groups, worth, strict=True) if judged for text in texts]
+        scores = iter(self._judge.score_pairs(pairs).tolist() if pairs else [])
         whole = plain(utterance)
         fits: list[float] = []
-        for place, near in found:
-            texts = self.moments[place].examples
-            likeness = [next(meanings) for _ in texts]
-            evidence = Evidence(near.score, likeness, [] if roughly else [next(scores) for _ in texts])
-            fit = 1.0 if any(plain(text) == whole for text in texts) else evidence.probability()
+        for (_, near), texts, one, judged in zip(found, groups, evidence, worth, strict=True):
+            known = replace(one, scores=[next(scores) for _ in texts]) if judged else one
+            fit = 1.0 if any(plain(text) == whole for text in texts) else known.probability()
             fits.append(max(fit, PROBABLE) if near.score >= CLOSE and fit >= DOUBTFUL else fit)
         return fits
 

@@ -30,6 +30,8 @@ from .grave import is_grave, is_medical
 from .lookup import ALIKE, is_dark, near_in
 from .material import Material
 from .moment import Moment
+from .responses import SURE as SUITED
+from .responses import responses_to
 from .roles import Roles, has_verb, is_request, roles_of, turned
 from .state import State
 from .taking_up import Taken, taken_from
@@ -125,6 +127,8 @@ class Hearing:
     """The tone of the utterance; but ``quiet`` if the conversation is sad, and the utterance is glad, funny or neutral."""
     near: list[Found] = field(default_factory=list[Found])
     """The entries of the bank that resemble the utterance, the most suitable first."""
+    responses: list[tuple[float, Moment]] = field(default_factory=list[tuple[float, Moment]])
+    """The kinds of reply that suit the utterance, the best first, with their probabilities."""
     follow_up: Moment | None = None
     """The follow-up of the last entry that the utterance resembles."""
     rest: Moment | None = None
@@ -184,6 +188,7 @@ def _understand(found: Hearing, phrases: Material, heard: Heard, seen: Analysis,
     found.sad = feeling is not None and feeling.tone == "sad"
     found.near = near_in(phrases, seen, asking, state, feeling, being=roles.being)
     dark = is_dark(seen, found.near) or found.sad
+    found.responses = responses_to(phrases, seen.normal.unguessed, dark=dark)
     found.tone = "sad" if dark else _tone(seen, found.moves, feeling)
     found.mood = "quiet" if state.tone == "sad" and found.tone in ("", "glad", "funny") else found.tone
     nearest = found.near[0] if found.near else Found(0.0, 0.0, Moment("", {}), "")
@@ -247,6 +252,7 @@ def _understand(found: Hearing, phrases: Material, heard: Heard, seen: Analysis,
         "echoed": found.taken is not None,
         "addressed": found.taken is not None and found.taken.told.subject == "yours",
         "settled": len(found.moves) == 1,
+        "responsive": bool(found.responses) and found.responses[0][0] >= SUITED,
         "broken": _is_broken(seen, size),
         **dict.fromkeys((*found.moves, *turns_in(seen.text, seen.sentences)), True),
     }  # fmt: skip

@@ -22,6 +22,7 @@ from .lookup import ALIKE, is_dark, near_in
 from .material import Material, material
 from .moment import Line, Moment
 from .repair import may_repair, repair_in
+from .responses import network
 from .roles import Roles, has_verb, roles_of
 from .state import LASTING, Being, Overheard, Pending, State
 from .taking_up import replies
@@ -91,6 +92,7 @@ class Listener:
             matcher.load()
         self._phrases.bank.load()
         load_tones()
+        network().load()
 
     def claims(self, heard: Heard, state: State | None = None) -> bool:
         """Return whether other modules would mistake an utterance for a question or a fact, so that small talk must answer.
@@ -347,6 +349,11 @@ class Listener:
         if sure:
             yield _Source(moves[hearing.moves[0]].lines(*groups), moves[hearing.moves[0]])
         yield _Source(moves[unsure].lines(*groups))
+
+    def _response(self, hearing: Hearing, state: State, chance: random.Random) -> Iterator[_Source]:
+        """Yield the replies of the kinds that suit the utterance, the best kind first."""
+        for _, kind in hearing.responses:
+            yield _Source(kind.lines("say"), kind)
 
     def _opinion(self, hearing: Hearing, state: State, chance: random.Random) -> Iterator[_Source]:
         """Yield the agent's opinion, which is chosen once per conversation. The agent does not judge people."""

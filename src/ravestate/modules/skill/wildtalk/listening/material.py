@@ -53,6 +53,7 @@ class Material:
         self.bank: Bank = read_bank()
         self.heads = {name: frozenset[str](words) for name, words in _read("heads").items()}
         self.replies = _moments("replies")
+        self.responses = _moments("responses")
         self.asked, self.areas = _moments("asked"), _moments("areas")
         self.vague = self.asked.pop("vague").words
         """Nouns that name nothing, such as *thing*."""

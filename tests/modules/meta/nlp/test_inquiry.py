@@ -1,0 +1,53 @@
+"""Questions and their kinds. The quality sets ``kinds_rows``, ``kinds_fresh_rows`` and ``questions_rows`` have more."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import pytest
+from hypothesis import given
+from hypothesis import strategies as st
+
+from ravestate.language.classifier import Classifier
+from ravestate.modules.meta.nlp import QuestionWord, inquiry
+from ravestate.modules.meta.nlp.analysis import analyse
+from ravestate.modules.meta.nlp.inquiry import question_of
+from ravestate.modules.meta.nlp.pipeline import pipeline
+
+ASKED = [
+    ("Where do they keep the umbrellas?", QuestionWord.PLACE),
+    ("Who left the gate open?", QuestionWord.PERSON),
+    ("How many eggs are left?", QuestionWord.AMOUNT),
+    ("Why did the lift stop?", QuestionWord.REASON),
+]
+
+
+@pytest.mark.parametrize(("text", "kind"), ASKED)
+def test_common_questions_need_no_sentence_model(
+    text: str, kind: QuestionWord, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    unloaded = Classifier(Path("missing.onnx"))
+    monkeypatch.setattr(inquiry, "kinds", lambda: unloaded)
+    assert question_of(text) is kind
+    assert question_of("The lift has stopped.") is None
+    assert question_of("The lift has stopped?") is QuestionWord.YES_NO
+
+
+@pytest.mark.parametrize(("text", "kind"), ASKED)
+@pytest.mark.parametrize(("other", "second"), ASKED)
+def test_the_first_of_several_questions_counts(text: str, kind: QuestionWord, other: str, second: QuestionWord) -> None:
+    inquiry.kinds().load()
+    assert question_of(f"I see. {text} {other}") is kind
+    assert question_of(f"{other} {text}") is second
+
+
+@given(st.text(max_size=300))
+def test_every_text_has_one_kind_or_none(text: str) -> None:
+    inquiry.kinds().load()
+    assert question_of(text) in (None, *QuestionWord)
+
+
+def test_a_question_mark_that_the_user_typed_makes_a_question_and_an_added_mark_does_not_count() -> None:
+    inquiry.kinds().load()
+    assert analyse("the blue one?", pipeline("")).question is not None
+    assert question_of(analyse("i had the blue one", pipeline("")).normal.unguessed) is None

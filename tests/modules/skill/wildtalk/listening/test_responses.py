@@ -1,0 +1,50 @@
+"""The kinds of reply that suit an utterance. The quality set ``responses_rows`` measures more of them."""
+
+from __future__ import annotations
+
+import pytest
+from hypothesis import given
+from hypothesis import strategies as st
+
+from quality.measure import labelled
+from ravestate.modules.skill.wildtalk.listening.material import material
+from ravestate.modules.skill.wildtalk.listening.responses import LEAST, LIGHT, network, responses_to
+
+from .conftest import Talk
+
+
+def test_the_network_and_the_phrases_have_the_same_kinds() -> None:
+    network().load()
+    assert set(network().labels) == material().responses.keys()
+
+
+@pytest.mark.parametrize("name", sorted(material().responses))
+def test_each_kind_has_enough_replies_and_most_of_them_ask_nothing(name: str) -> None:
+    (lines,) = material().responses[name].lines("say")
+    assert len(lines) >= 10
+    assert sum(not line.asks for line in lines) >= 6
+    assert not any(line.roles for line in lines), "a reply fits every utterance of its kind, so it has no gaps"
+
+
+def test_no_reply_belongs_to_two_kinds() -> None:
+    texts = [line.text for kind in material().responses.values() for lines in kind.lines("say") for line in lines]
+    assert len(texts) == len(set(texts))
+
+
+@given(st.text(max_size=200), st.booleans())
+def test_the_kinds_come_with_their_probabilities_in_order(text: str, dark: bool) -> None:
+    network().load()
+    chances = [chance for chance, _ in responses_to(material(), text, dark=dark)]
+    assert chances == sorted(chances, reverse=True)
+    assert sum(chances) <= 1.001 and all(chance >= LEAST for chance in chances)
+
+
+@given(st.sampled_from([text for text, _ in labelled("responses_rows")]))
+def test_a_dark_utterance_gets_no_light_reply(text: str) -> None:
+    network().load()
+    assert not any(kind.tone in LIGHT for _, kind in responses_to(material(), text, dark=True))
+
+
+def test_a_reply_of_a_kind_returns_only_after_the_others(talk: Talk) -> None:
+    said = [talk.say(f"the captain of the ferry wore {number} hats at once") for number in ("two", "three", "four")]
+    assert len(set(said)) == 3
