@@ -80,7 +80,7 @@ bench: setup ## measure the speed, and compare it with other rule engines
 
 .PHONY: quality
 quality: setup ## measure how well text is understood, and print the shares of right results
-	@PYTHONPATH=tests $(BIN)/python -m quality.measure quality.blind quality.modules quality.language quality.skills quality.told quality.marked quality.steps quality.followups $(ARGS)
+	@PYTHONPATH=tests $(BIN)/python -m quality.measure quality.blind quality.modules quality.language quality.skills quality.told quality.marked quality.responses quality.steps quality.followups $(ARGS)
 
 # ------------------------------------------------------------------------------------------- to work on it
 

@@ -88,8 +88,7 @@ def flags(text: str) -> str:
 def question(text: str) -> QuestionWord | None:
     """Return the kind of question that nlp finds; None if a text asks nothing."""
     kinds().load()
-    read = _read(text)[0].text
-    return question_of(read if "?" in text else read.replace("?", "."))
+    return question_of(_Prepared().normalise(text, Settings().agent_names).unguessed)
 
 
 def questions(text: str) -> str:

@@ -14,16 +14,33 @@ from ravestate.modules.skill.wildtalk.listening.responses import LEAST, network
 NAME = "responses_rows"
 
 
-def rows() -> list[tuple[str, list[str]]]:
-    """Return the utterances, each with its kinds of reply."""
-    return [(text, kinds.split(", ")) for text, kinds in measure.labelled(NAME)]
+def rows() -> list[tuple[str, str, list[str]]]:
+    """Return the utterances, each after the user's previous utterance, and with its kinds of reply."""
+    found: list[tuple[str, str, list[str]]] = []
+    before = ""
+    for line in (measure.HERE / f"{NAME}.tsv").read_text(encoding="utf-8").splitlines():
+        if line.startswith("#"):  # another conversation begins
+            before = ""
+            continue
+        text, kinds = line.split("\t")
+        found.append((before, text, kinds.split(", ")))
+        before = text
+    return found
+
+
+def results() -> list[Result]:
+    """Measure the set. `measure.py` prints the result."""
+    return [measured()]
 
 
 def measured() -> Result:
     """Return the shares of the utterances whose likeliest kind is likely enough; and of these, the shares that suit
     and that are marked as wrong."""
     network().load()
-    found = [(text, kinds, *network().best(normalise(text).unguessed)) for text, kinds in rows()]
+    found = [
+        (text, kinds, *network().ranked(normalise(text).unguessed, normalise(before).unguessed)[0])
+        for before, text, kinds in rows()
+    ]
     said = [(text, kinds, name) for text, kinds, name, chance in found if chance >= LEAST]
     suits = sum(name in kinds for _, kinds, name in said)
     wrong = [f"{text} -> {name}" for text, kinds, name in said if f"!{name}" in kinds]

@@ -7,7 +7,7 @@ from pathlib import Path
 
 import pytest
 
-from quality import blind, followups, marked, measure, skills, told
+from quality import blind, followups, marked, measure, responses, skills, told
 from quality.modules import plain
 from ravestate.modules.skill.agentqa.life_file import read_life
 
@@ -48,6 +48,14 @@ def test_facts_are_understood_in_sentences_that_nobody_has_seen() -> None:
     assert told_facts.shares["right"] >= 0.82, told_facts.misses
     assert answers.shares["right"] >= 0.8, answers.misses
     assert no_fact.shares["right"] >= 0.95, no_fact.misses
+
+
+def test_most_kinds_of_reply_that_the_listener_chooses_suit_and_few_are_wrong() -> None:
+    result = responses.measured()
+    print(result.shares, *result.misses, sep="\n  ")
+    assert result.shares["suits"] >= 0.68
+    assert result.shares["wrong"] <= 0.08
+    assert result.shares["likely"] >= 0.5
 
 
 @pytest.mark.parametrize("name", skills.SETS)

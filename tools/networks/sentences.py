@@ -17,11 +17,12 @@ from typing import Any
 from shared import SRC, WIDTH, Row, checked, digest, mixer, padded, run, trained, write
 
 from ravestate.language.lexicon import load_lexicon
+from ravestate.language.network import EARLIER
 from ravestate.language.normal import normalise
 
 HERE = Path(__file__).parent
 LAYERS, HIDDEN, DROPOUT = 5, 128, 0.4
-EPOCHS, BATCH, RATE = 12, 64, 2e-3
+EPOCHS, BATCH, RATE = 9, 128, 2e-3
 SHARES = 1.0, 0.6, 0.4, 0.3
 """The relative shares of the first class of a text, the second..."""
 SPREAD = 0.1
@@ -36,11 +37,19 @@ OUT = {
 }
 
 
-def cases(files: Sequence[Path]) -> dict[str, list[str]]:
-    """Return the texts of some files, each with its classes."""
-    lines = [line for file in files for line in file.read_text(encoding="utf-8").splitlines()]
-    rows = (line.split("\t") for line in lines if "\t" in line and not line.startswith("#"))
-    return {text.strip(): [name.strip() for name in names.split(",")] for text, names in rows}
+def cases(files: Sequence[Path]) -> dict[str, tuple[str, list[str]]]:
+    """Return the texts of some files, each with the utterance before it (empty if there is none), and its classes."""
+    found: dict[str, tuple[str, list[str]]] = {}
+    for file in files:
+        before = ""
+        for line in file.read_text(encoding="utf-8").splitlines():
+            if line.startswith("#"):  # another talk begins
+                before = ""
+            elif "\t" in line:
+                text, names = line.split("\t")
+                found[text.strip()] = before, [name.strip() for name in names.split(",")]
+                before = text.strip() if file.name.startswith("talks") else ""
+    return found
 
 
 def network(torch: Any, classes: int) -> Any:
@@ -50,7 +59,7 @@ def network(torch: Any, classes: int) -> Any:
     class Network(nn.Module):  # type: ignore[misc, name-defined]
         def __init__(self) -> None:
             super().__init__()
-            self.mixer = mixer(torch, LAYERS)
+            self.mixer = mixer(torch, LAYERS, 1 + EARLIER)
             self.lstm = nn.LSTM(WIDTH, HIDDEN, 1, batch_first=True, bidirectional=True)
             self.drop = nn.Dropout(DROPOUT)
             self.weight, self.out = nn.Linear(2 * HIDDEN, 1), nn.Linear(6 * HIDDEN, classes)
@@ -99,9 +108,10 @@ def main(arguments: Sequence[str]) -> int:
     torch.manual_seed(0)
     load_lexicon()
     known = cases(files)
-    labels = sorted({label for names in known.values() for label in names if not label.startswith("!")})
-    rows = [Row(normalise(text).unguessed, longest=64) for text in known]
-    for row, names in zip(rows, known.values(), strict=True):
+    labels = sorted({label for _, names in known.values() for label in names if not label.startswith("!")})
+    rows = {text: Row(normalise(text).unguessed, longest=64) for text in known}
+    for row, (before, names) in zip(rows.values(), known.values(), strict=True):
+        row.before = rows.get(before)
         row.classes = [labels.index(label) for label in names if label in labels]
         row.wrong = [labels.index(label[1:]) for label in names if label[1:] in labels and label.startswith("!")]
     print(f"{len(rows)} sentences, {len(labels)} classes", flush=True)
@@ -109,8 +119,9 @@ def main(arguments: Sequence[str]) -> int:
     def loss_of(made: Any, batch: list[Row]) -> Any:
         return loss(torch, made, batch, len(labels))
 
-    made = trained(torch, network(torch, len(labels)), rows, loss_of, EPOCHS, BATCH, RATE)
-    about = {"labels": ";".join(labels), "sentences": digest(files)}
+    made = trained(torch, network(torch, len(labels)), list(rows.values()), loss_of, EPOCHS, BATCH, RATE)
+    reads_before = any(row.before is not None for row in rows.values())
+    about = {"labels": ";".join(labels), "sentences": digest(files), "before": str(int(reads_before))}
     write(torch, made, out, LAYERS, ["classes"], about)
     return 0
 

@@ -1,4 +1,4 @@
-"""The parts of the training that both kinds of networks share: vectors, batches, the loop, and the ONNX file."""
+"""The parts of the training that all networks share: vectors, batches, the loop, and the ONNX file."""
 
 from __future__ import annotations
 
@@ -13,8 +13,11 @@ import numpy as np
 
 from ravestate.language.encoder import BUNDLED
 from ravestate.language.model import model_in
+from ravestate.language.network import BEFORE, EARLIER
 
 SRC = Path(__file__).parents[2] / "src" / "ravestate"
+KEPT = 0.7
+"""The share of texts that the network sees together with the utterance before, so that it can also do without."""
 WIDTH = 384
 """The length of a token's vector after one layer."""
 
@@ -29,6 +32,8 @@ class Row:
         """The vectors: shape (tokens, layers * WIDTH)."""
         capitals = [int(start < end and text[start].isupper()) for start, end in spans]
         self.marks = capitals[:longest]
+        self.before: Row | None = None
+        """The utterance before, in a talk."""
         self.context = 0
         self.classes: list[int] = []
         self.wrong: list[int] = []
@@ -48,7 +53,7 @@ def digest(files: Iterable[Path]) -> str:
 
 def batches(rows: Sequence[Row], size: int, order: random.Random) -> list[list[Row]]:
     """Return the rows in a new order, in batches of similar length, because padding costs time."""
-    ordered = sorted(rows, key=lambda row: len(row) + order.random() * 4)
+    ordered = sorted(rows, key=lambda row: len(_with_before(row)[1]) + order.random() * 4)
     found = [ordered[at : at + size] for at in range(0, len(ordered), size)]
     order.shuffle(found)
     return found
@@ -56,19 +61,28 @@ def batches(rows: Sequence[Row], size: int, order: random.Random) -> list[list[R
 
 def padded(torch: Any, rows: Sequence[Row]) -> tuple[Any, Any, Any]:
     """Return the vectors, the marks and the lengths of some rows, with random noise against overfitting."""
-    longest = max(map(len, rows))
+    parts = [_with_before(row) if torch.rand(1).item() < KEPT else (row.vectors, row.marks) for row in rows]
+    longest = max(len(marks) for _, marks in parts)
     vectors = torch.zeros(len(rows), longest, rows[0].vectors.shape[1])
     marks = torch.zeros((len(rows), longest), dtype=torch.long)
-    for number, row in enumerate(rows):
-        vectors[number, : len(row)] = torch.from_numpy(row.vectors.astype(np.float32))
-        marks[number, : len(row)] = torch.tensor(row.marks)
+    for number, (one, marked) in enumerate(parts):
+        vectors[number, : len(marked)] = torch.from_numpy(one.astype(np.float32))
+        marks[number, : len(marked)] = torch.tensor(marked)
     vectors = vectors + torch.randn_like(vectors) * 0.05
     vectors = vectors * (torch.rand(vectors.shape[:2]) > 0.05)[..., None]
-    return vectors, marks, torch.tensor([len(row) for row in rows])
+    return vectors, marks, torch.tensor([len(marks) for _, marks in parts])
 
 
-def mixer(torch: Any, layers: int) -> Any:
-    """Return the first part of both networks: a weighted mean of the layers, plus a vector for marked tokens."""
+def _with_before(row: Row) -> tuple[Any, list[int]]:
+    """Return the vectors and the marks of a text, after those of the utterance before it."""
+    if row.before is None:
+        return row.vectors, row.marks
+    earlier = row.before.vectors[:BEFORE]
+    return np.concatenate([earlier, row.vectors]), [EARLIER] * len(earlier) + row.marks
+
+
+def mixer(torch: Any, layers: int, kinds: int = 2) -> Any:
+    """Return the first part of all networks: a weighted mean of the layers, plus a vector for each kind of mark."""
     nn = torch.nn
 
     class Mixer(nn.Module):  # type: ignore[misc, name-defined]
@@ -76,7 +90,7 @@ def mixer(torch: Any, layers: int) -> Any:
             super().__init__()
             self.weights = nn.Parameter(torch.zeros(layers))
             self.norms = nn.ModuleList([nn.LayerNorm(WIDTH) for _ in range(layers)])
-            self.mark = nn.Embedding(2, WIDTH)
+            self.mark = nn.Embedding(kinds, WIDTH)
             nn.init.normal_(self.mark.weight, 0, 0.1)
 
         def forward(self, vectors: Any, marks: Any) -> Any:

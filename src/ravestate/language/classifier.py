@@ -41,11 +41,17 @@ class Classifier(Network):
         """
         return next(iter(self.ranked(text)), ("", 0.0))
 
-    def ranked(self, text: str) -> tuple[tuple[str, float], ...]:
-        """Return the likeliest classes of a text in normal form with their probabilities, at most `RANKED`; none before `load`."""
-        return self._latest(text) if self.loaded and text.strip() else ()
+    def ranked(self, text: str, before: str = "") -> tuple[tuple[str, float], ...]:
+        """Return the likeliest classes of a text with their probabilities, at most `RANKED`; none before `load`.
 
-    def _ranked(self, text: str) -> tuple[tuple[str, float], ...]:
-        _, (chances,) = self.run(text[:LONGEST])
+        Args:
+            text: A text in normal form.
+            before: The utterance before, if the network reads it.
+        """
+        text, before = text[:LONGEST], before[:LONGEST]  # long texts would fill the memory of the latest texts
+        return self._latest(text, before) if self.loaded and text.strip() else ()
+
+    def _ranked(self, text: str, before: str) -> tuple[tuple[str, float], ...]:
+        _, (chances,) = self.run(text, before=before)
         order: list[int] = (-chances[0]).argsort(kind="stable")[:RANKED].tolist()
         return tuple((self.labels[place], float(chances[0][place])) for place in order)

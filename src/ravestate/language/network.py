@@ -20,7 +20,11 @@ if TYPE_CHECKING:
     from numpy.typing import NDArray
 
 
-LATEST = 8
+BEFORE = 24
+"""The maximum number of tokens of the utterance before."""
+EARLIER = 2
+"""The mark of a token of the utterance before."""
+LATEST = 16
 """The number of texts whose vectors are kept, because several networks read one utterance."""
 
 
@@ -31,13 +35,15 @@ class Network:
         """Choose a file; load nothing yet.
 
         Args:
-            file: An ONNX file with the inputs ``vectors`` (1, tokens, layers * d), ``marks`` (1, tokens: 1 for a capital) and perhaps
-                ``context`` (1,). Its metadata has ``labels`` with semicolons between them.
+            file: An ONNX file with the inputs ``vectors`` (1, tokens, layers * d), ``marks`` (1, tokens: 1 for a capital, `EARLIER` for
+                the utterance before) and perhaps ``context`` (1,). Its metadata has ``labels`` with semicolons between them,
+                and ``before`` (1) if it reads the utterance before.
         """
         self._file = file
         self._lock = threading.Lock()
         self._session: Any = None
         self.labels: list[str] = []
+        self._reads_before = False
 
     @property
     def loaded(self) -> bool:
@@ -74,23 +80,31 @@ class Network:
         options.log_severity_level = 4  # log no errors, because they are raised as exceptions
         try:
             session = runtime.InferenceSession(str(self._file), options, providers=["CPUExecutionProvider"])
-            labels = session.get_modelmeta().custom_metadata_map["labels"]
+            about = session.get_modelmeta().custom_metadata_map
+            labels = about["labels"]
         except Exception as error:  # the library has its own exceptions, with long messages
             raise PlatformError(f"the network {str(self._file)!r} is broken: install ravestate again") from error
         self.labels = labels.split(";")
+        self._reads_before = about.get("before") == "1"
         return session
 
-    def run(self, text: str, context: int | None = None) -> tuple[list[tuple[int, int]], list[NDArray[Any]]]:
+    def run(
+        self, text: str, context: int | None = None, before: str = ""
+    ) -> tuple[list[tuple[int, int]], list[NDArray[Any]]]:
         """Return the span of each token in a text, and the outputs of the network for the text.
 
         Args:
             text: One or more sentences in normal form.
             context: The number of the context, if the network has contexts.
+            before: The utterance before, if the network reads it. Its tokens come first.
         """
         import numpy as np
 
         spans, vectors = _vectors(text)
         marks = [int(start < end and text[start].isupper()) for start, end in spans]
+        if before and self._reads_before:
+            earlier = _vectors(before)[1][:BEFORE]
+            vectors, marks = np.concatenate([earlier, vectors]), [EARLIER] * len(earlier) + marks
         given = {"vectors": vectors[None], "marks": np.array([marks])}
         if context is not None:
             given["context"] = np.array([context])

@@ -43,8 +43,10 @@ class Normal:
 
     @property
     def unguessed(self) -> str:
-        """The normal form without added question marks. The networks read it, because an added mark is only a guess."""
-        return self.text if "?" in self.original else self.text.replace("?", ".")
+        """The normal form with full stops in place of added question marks, which are only guesses. The networks read it."""
+        if "?" not in self.original:
+            return self.text.replace("?", ".")
+        return "".join("." if mark == "?" and self.adds(at, at + 1) else mark for at, mark in enumerate(self.text))
 
     @property
     def typed(self) -> str:

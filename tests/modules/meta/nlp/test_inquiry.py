@@ -31,23 +31,37 @@ def test_common_questions_need_no_sentence_model(
     assert question_of(text) is kind
     assert question_of("The lift has stopped.") is None
     assert question_of("The lift has stopped?") is QuestionWord.YES_NO
+    assert question_of("When I was young I lived in Berlin.") is None
+    assert analyse("do you like games", pipeline("")).question is QuestionWord.YES_NO
 
 
 @pytest.mark.parametrize(("text", "kind"), ASKED)
 @pytest.mark.parametrize(("other", "second"), ASKED)
 def test_the_first_of_several_questions_counts(text: str, kind: QuestionWord, other: str, second: QuestionWord) -> None:
-    inquiry.kinds().load()
     assert question_of(f"I see. {text} {other}") is kind
     assert question_of(f"{other} {text}") is second
 
 
 @given(st.text(max_size=300))
 def test_every_text_has_one_kind_or_none(text: str) -> None:
-    inquiry.kinds().load()
     assert question_of(text) in (None, *QuestionWord)
 
 
-def test_a_question_mark_that_the_user_typed_makes_a_question_and_an_added_mark_does_not_count() -> None:
-    inquiry.kinds().load()
-    assert analyse("the blue one?", pipeline("")).question is not None
-    assert question_of(analyse("i had the blue one", pipeline("")).normal.unguessed) is None
+@pytest.mark.parametrize("text", ["the blue one?", "The blue one?!", "really?!"])
+def test_a_question_mark_that_the_user_typed_makes_a_question(text: str) -> None:
+    assert analyse(text, pipeline("")).question is not None
+
+
+def test_an_added_question_mark_does_not_count() -> None:
+    normal = analyse("is raining here", pipeline("")).normal
+    assert normal.text.endswith("?") and not normal.unguessed.endswith("?")
+
+
+def test_the_question_at_the_end_of_a_long_text_is_found() -> None:
+    told = "I went down to the harbour. The boats were back. "
+    assert question_of(told * 20 + "Where do you live?") is QuestionWord.PLACE
+    assert question_of("and then we went on " * 30 + "so where do you live?") is QuestionWord.PLACE
+
+
+def test_the_network_knows_the_kinds_of_questions() -> None:
+    assert set(inquiry.kinds().labels) == {*(kind.name for kind in QuestionWord), "-"}

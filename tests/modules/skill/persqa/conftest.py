@@ -10,6 +10,7 @@ import pytest
 
 from ravestate.language.matcher import bundled_matcher
 from ravestate.modules import ontology
+from ravestate.modules.meta.nlp import inquiry
 from ravestate.modules.meta.nlp.analysis import MATCHERS
 from ravestate.modules.meta.nlp.pipeline import pipeline
 from ravestate.modules.meta.ontology.opening import open_memory
@@ -23,6 +24,7 @@ def reader() -> None:
     """Load the pipeline and the examples, once for all tests."""
     pipeline("").load()
     kinds.load()
+    inquiry.kinds().load()
     for name in MATCHERS:
         bundled_matcher(name).load()
 

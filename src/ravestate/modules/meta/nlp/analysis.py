@@ -21,7 +21,7 @@ from .answer import YesNo, yesno_of
 from .clause import Clause
 from .closing import Closing, closing_of
 from .contrast import Contrast, contrasts_of
-from .inquiry import question_of
+from .inquiry import kinds, question_of
 from .introduction import Introduction, introductions_in
 from .pipeline import Pipeline
 from .question_word import QuestionWord
@@ -158,7 +158,9 @@ def analyse(
     if reading is not None and written is not None:
         question, yesno = reading.question_word, reading.yesno
     else:
-        question, yesno = question_of(normal.unguessed), yesno_of(normal.unguessed)
+        # Until the network is loaded, an added question mark is the best evidence of a question.
+        question = question_of(normal.unguessed if kinds().loaded else normal.text)
+        yesno = yesno_of(normal.unguessed)
     closing = closing_of(tree, sentences)
     meant = [closing.text] if closing is not None and closing.remarks else sentences
     return Analysis(

@@ -8,7 +8,6 @@ from __future__ import annotations
 
 import re
 from dataclasses import dataclass
-from functools import cache
 from pathlib import Path
 
 from ravestate.language.classifier import Classifier
@@ -63,6 +62,7 @@ _BEGINS = re.compile(rf"\W*(?:(?:oh|well|so)\W+)*(?:{_YES})(?!\w)", re.IGNORECAS
 _ONLY = re.compile(rf"{_BEGINS.pattern}(?:\W+(?:{_YES}|please|thanks|thank you|now|all|everything))*\W*", re.IGNORECASE)
 _REFUSES = re.compile(r"\b(?:no|not|never|do ?nt|nothing|stop|cancel|leave|wait)\b|n['’]t\b", re.IGNORECASE)
 _EMOJI = re.compile(r"\W*([👍👎])")
+_NETWORK = Classifier(Path(__file__).with_name("answers.onnx"))
 
 
 def yesno_of(text: str) -> YesNo:
@@ -98,7 +98,6 @@ def begins_with_yes(text: str) -> bool:
     return _BEGINS.match(text) is not None and _REFUSES.search(text) is None
 
 
-@cache
 def answers() -> Classifier:
     """Return the classifier of answers, which all contexts share. It may not be loaded yet."""
-    return Classifier(Path(__file__).with_name("answers.onnx"))
+    return _NETWORK

@@ -7,49 +7,53 @@ sentence model, the first words and the question mark of a sentence decide.
 from __future__ import annotations
 
 import re
-from functools import cache
 from pathlib import Path
 
-from ravestate.language.classifier import Classifier
+from ravestate.language.classifier import LONGEST, Classifier
 from ravestate.language.sentences import sentences
 
-from .question_word import QUESTION_WORDS, QuestionWord
+from .question_word import MEASURES, QUESTION_WORDS, QuestionWord
 
 _OPENING = re.compile(r"\W*(?:(?:and|but|so|well|oh|ok|okay|hi|hello|hey)\W+)*(\w+)\W+(\w*)", re.IGNORECASE)
 """The first two words of a sentence, without words such as *and*."""
-_AMOUNTS = frozenset(("many", "much", "old", "long", "far", "tall", "big", "often", "high"))
-_MOST = 6
-"""The maximum number of sentences that are read."""
+_MOST = 12
+"""The maximum number of sentences that are read: half of them from the beginning, and half from the end."""
+_NETWORK = Classifier(Path(__file__).with_name("kinds.onnx"))
 
 
 def question_of(text: str) -> QuestionWord | None:
     """Return the kind of the first question in a text in normal form; None if the text has no question.
 
+    Only the first and the last six sentences of a text are read, and the first and the last 300 characters of a
+    sentence.
+
     Example:
         >>> question_of("I see. Where do you live?")
-        QuestionWord.PLACE
+        <QuestionWord.PLACE: 'place'>
     """
-    found = (_kind(sentence) for sentence in sentences(text)[:_MOST])
-    return next((kind for kind in found if kind is not None), None)
+    found = sentences(text)
+    read = found if len(found) <= _MOST else (*found[: _MOST // 2], *found[-_MOST // 2 :])
+    parts = (part for sentence in read for part in dict.fromkeys((sentence[:LONGEST], sentence[-LONGEST:])))
+    return next((kind for kind in map(_kind, parts) if kind is not None), None)
 
 
 def _kind(sentence: str) -> QuestionWord | None:
     name = kinds().best(sentence)[0] or _plain_kind(sentence)
     if name == "-":
-        return QuestionWord.YES_NO if sentence.endswith("?") else None
+        return QuestionWord.YES_NO if "?" in sentence else None
     return QuestionWord[name]
 
 
 def _plain_kind(sentence: str) -> str:
-    """Return the kind by the first words and the question mark."""
-    first, second = opening.group(1, 2) if (opening := _OPENING.match(f"{sentence} ")) else ("", "")
+    """Return the kind of a sentence by its first words, if it has a question mark."""
+    opening = _OPENING.match(f"{sentence} ") if "?" in sentence else None
+    first, second = opening.group(1, 2) if opening else ("", "")
     kind = QUESTION_WORDS.get(first.lower())
-    if kind is QuestionWord.FORM and second.lower() in _AMOUNTS:
+    if kind is QuestionWord.FORM and second.lower() in MEASURES:
         kind = QuestionWord.AMOUNT
     return "-" if kind is None else kind.name
 
 
-@cache
 def kinds() -> Classifier:
     """Return the classifier of questions, which all contexts share. It may not be loaded yet."""
-    return Classifier(Path(__file__).with_name("kinds.onnx"))
+    return _NETWORK

@@ -54,7 +54,7 @@ AUXILIARIES = word_set(
 )
 """Verbs that precede the subject in a question."""
 
-_MEASURES = word_set(
+MEASURES = word_set(
     "many much old long far tall big large high deep heavy fast hot cold cool warm expensive often wide small short "
     "young late soon close near thick strong loud rich quickly regularly frequently little few costly",
 )
@@ -85,8 +85,6 @@ def kind_at(words: Sequence[Word], index: int) -> QuestionWord | None:
     """
     word = words[index]
     kind = QUESTION_WORDS.get(word.low)
-    if word.low == "y" and words[index + 1 :] and words[index + 1].low in AUXILIARIES | {"not"}:
-        return QuestionWord.REASON
     if kind is None:
         return None
     rest = words[index + 1 :]
@@ -94,7 +92,7 @@ def kind_at(words: Sequence[Word], index: int) -> QuestionWord | None:
     if kind is QuestionWord.FORM:
         if after == "come":
             return QuestionWord.REASON
-        return QuestionWord.AMOUNT if after in _MEASURES else kind
+        return QuestionWord.AMOUNT if after in MEASURES else kind
     if kind is QuestionWord.OBJECT:
         if after == "for":
             return QuestionWord.REASON

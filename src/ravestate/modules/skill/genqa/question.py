@@ -12,7 +12,7 @@ from ravestate.language.moves import LISTENING
 from ravestate.modules._text import printable
 from ravestate.modules.meta.nlp import QuestionWord
 from ravestate.modules.meta.nlp.analysis import Analysis
-from ravestate.modules.meta.nlp.inquiry import question_of
+from ravestate.modules.meta.nlp.inquiry import kinds, question_of
 from ravestate.modules.meta.nlp.pipeline import pipeline
 from ravestate.modules.meta.nlp.tree import Tree, Word
 
@@ -87,9 +87,13 @@ class Parse:
         return any(word.tag in FINITE for word in self.asked)
 
 
-@lru_cache(maxsize=REMEMBERED)
 def parse(text: str) -> Parse:
     """Parse a text with the pipeline of nlp. Recent parses are kept, because several readings contain the same text."""
+    return _parse(text, kinds().loaded)
+
+
+@lru_cache(maxsize=REMEMBERED)
+def _parse(text: str, _loaded: bool) -> Parse:
     tree, entities = pipeline("").read(printable(text))
     return parsed(tree, entities, question_of(tree.text))
 

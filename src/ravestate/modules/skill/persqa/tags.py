@@ -2,13 +2,13 @@
 
 from __future__ import annotations
 
-from functools import cache
 from pathlib import Path
 
 from ravestate.language.tagger import Tagger
 
+_NETWORK = Tagger(Path(__file__).with_name("facts.onnx"))
 
-@cache
+
 def tagger() -> Tagger:
     """Return the tagger of facts, which all contexts share. It may not be loaded yet."""
-    return Tagger(Path(__file__).with_name("facts.onnx"))
+    return _NETWORK

@@ -10,6 +10,7 @@ import pytest
 from ravestate.language.matcher import bundled_matcher
 from ravestate.language.moves import bundled_moves
 from ravestate.modules.meta.nlp.analysis import Analysis, analyse
+from ravestate.modules.meta.nlp.inquiry import kinds
 from ravestate.modules.meta.nlp.pipeline import pipeline
 from ravestate.modules.skill.wildtalk.listening import Heard, Listener, State
 from ravestate.modules.skill.wildtalk.listening.bank import Bank
@@ -49,6 +50,7 @@ def _models() -> None:
     for name in ("acts", "feelings", "asks"):
         bundled_matcher(name).load()
     bundled_moves().load()
+    kinds().load()
     Listener().load()
 
 

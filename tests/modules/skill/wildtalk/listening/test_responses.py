@@ -7,10 +7,14 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from quality.measure import labelled
+from ravestate.modules.skill.wildtalk.listening import Heard
+from ravestate.modules.skill.wildtalk.listening.hearing import hear
 from ravestate.modules.skill.wildtalk.listening.material import material
 from ravestate.modules.skill.wildtalk.listening.responses import LEAST, LIGHT, network, responses_to
 
-from .conftest import Talk
+from .conftest import Talk, seen
+
+ROWS = [text for text, _ in labelled("responses_rows")]
 
 
 def test_the_network_and_the_phrases_have_the_same_kinds() -> None:
@@ -34,17 +38,41 @@ def test_no_reply_belongs_to_two_kinds() -> None:
 @given(st.text(max_size=200), st.booleans())
 def test_the_kinds_come_with_their_probabilities_in_order(text: str, dark: bool) -> None:
     network().load()
-    chances = [chance for chance, _ in responses_to(material(), text, dark=dark)]
+    chances = [chance for chance, _ in responses_to(material(), text, dark=dark, sad=False)]
     assert chances == sorted(chances, reverse=True)
     assert sum(chances) <= 1.001 and all(chance >= LEAST for chance in chances)
 
 
-@given(st.sampled_from([text for text, _ in labelled("responses_rows")]))
+@given(st.sampled_from(ROWS))
 def test_a_dark_utterance_gets_no_light_reply(text: str) -> None:
     network().load()
-    assert not any(kind.tone in LIGHT for _, kind in responses_to(material(), text, dark=True))
+    assert not any(kind.tone in LIGHT for _, kind in responses_to(material(), text, dark=True, sad=False))
 
 
-def test_a_reply_of_a_kind_returns_only_after_the_others(talk: Talk) -> None:
-    said = [talk.say(f"the captain of the ferry wore {number} hats at once") for number in ("two", "three", "four")]
-    assert len(set(said)) == 3
+@given(st.sampled_from(ROWS))
+def test_a_sad_conversation_has_no_funny_reply(text: str) -> None:
+    network().load()
+    assert not any(kind.tone == "funny" for _, kind in responses_to(material(), text, dark=False, sad=True))
+
+
+def test_a_user_who_wants_no_questions_is_asked_none(talk: Talk) -> None:
+    talk.say("stop asking me questions")
+    assert not talk.state.asks
+    said = [talk.say(text) for text in ROWS[:12] if "?" not in text]
+    assert not any(answer.endswith("?") for answer in said)
+
+
+def test_the_replies_of_a_kind_take_turns() -> None:
+    (lines,) = material().responses["laughs"].lines("say")
+    talk, texts = Talk(), {line.text for line in lines}
+    said = [talk.say("haha " * (1 + number % 3)) for number in range(len(lines))]
+    found = [answer for answer in said if answer in texts]
+    assert len(found) > len(lines) / 2
+    assert len(set(found)) == len(found)
+
+
+def test_a_reply_that_the_user_has_rejected_is_not_said_again(talk: Talk) -> None:
+    hearing = hear(material(), Heard("haha", seen("haha")), talk.state)
+    (first, *_) = [kind for _, kind in hearing.responses]
+    hearing.leave_out(first.name, "")
+    assert first not in [kind for _, kind in hearing.responses]

@@ -16,7 +16,7 @@ from ravestate.language.contractions import word_set
 from ravestate.language.feelings import SORROWS
 from ravestate.language.matcher import Match
 from ravestate.language.nonsense import is_nonsense
-from ravestate.language.normal import plain
+from ravestate.language.normal import normalise, plain
 from ravestate.modules.meta.nlp.analysis import ADVICE, Analysis
 from ravestate.modules.meta.nlp.question_word import QUESTION_WORDS, QuestionWord
 from ravestate.modules.meta.nlp.statement import Statement
@@ -30,8 +30,7 @@ from .grave import is_grave, is_medical
 from .lookup import ALIKE, is_dark, near_in
 from .material import Material
 from .moment import Moment
-from .responses import SURE as SUITED
-from .responses import responses_to
+from .responses import responses_to, surely_suits
 from .roles import Roles, has_verb, is_request, roles_of, turned
 from .state import State
 from .taking_up import Taken, taken_from
@@ -140,6 +139,9 @@ class Hearing:
         """Remove the answers of a moment or an entry of the bank, and those of an area of life."""
         self.near = [one for one in self.near if one.moment.name != moment]
         self.meanings = [one for one in self.meanings if one.name != moment]
+        self.responses = [(chance, kind) for chance, kind in self.responses if kind.name != moment]
+        if not surely_suits(self.responses):
+            self.tags -= {"responsive"}
         if not self.near or self.near[0].fit < ALIKE:
             self.tags -= {"alike"}
         if self.asked is not None and self.asked.area is not None and self.asked.area.name == area:
@@ -188,7 +190,8 @@ def _understand(found: Hearing, phrases: Material, heard: Heard, seen: Analysis,
     found.sad = feeling is not None and feeling.tone == "sad"
     found.near = near_in(phrases, seen, asking, state, feeling, being=roles.being)
     dark = is_dark(seen, found.near) or found.sad
-    found.responses = responses_to(phrases, seen.normal.unguessed, dark=dark)
+    before = normalise(state.before).unguessed
+    found.responses = responses_to(phrases, seen.normal.unguessed, before, dark=dark, sad=state.tone == "sad")
     found.tone = "sad" if dark else _tone(seen, found.moves, feeling)
     found.mood = "quiet" if state.tone == "sad" and found.tone in ("", "glad", "funny") else found.tone
     nearest = found.near[0] if found.near else Found(0.0, 0.0, Moment("", {}), "")
@@ -252,7 +255,7 @@ def _understand(found: Hearing, phrases: Material, heard: Heard, seen: Analysis,
         "echoed": found.taken is not None,
         "addressed": found.taken is not None and found.taken.told.subject == "yours",
         "settled": len(found.moves) == 1,
-        "responsive": bool(found.responses) and found.responses[0][0] >= SUITED,
+        "responsive": surely_suits(found.responses) and not (bound or (kind and size <= BARE)),
         "broken": _is_broken(seen, size),
         **dict.fromkeys((*found.moves, *turns_in(seen.text, seen.sentences)), True),
     }  # fmt: skip

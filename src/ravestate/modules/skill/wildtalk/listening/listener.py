@@ -22,7 +22,7 @@ from .lookup import ALIKE, is_dark, near_in
 from .material import Material, material
 from .moment import Line, Moment
 from .repair import may_repair, repair_in
-from .responses import network
+from .responses import is_general, network
 from .roles import Roles, has_verb, roles_of
 from .state import LASTING, Being, Overheard, Pending, State
 from .taking_up import replies
@@ -236,7 +236,7 @@ class Listener:
             if line is None:
                 continue
             moment = source.moment
-            tone = hearing.tone if moment is None else moment.tone or "sad" * hearing.sad
+            tone = hearing.tone if moment is None else moment.tone or "sad" * (hearing.tone == "sad")
             tone = "" if tone == "funny" else tone  # a funny story leaves no tone behind
             after = state.toned(tone, LASTING if moment is None else moment.lasts)
             after = replace(
@@ -276,7 +276,8 @@ class Listener:
                 continue
             special = getattr(self, f"_{row.group[1:]}", None) if row.group.startswith("@") else None
             if special is not None:
-                yield from (replace(source, weak=row.weak) for source in special(hearing, state, chance))
+                found = special(hearing, state, chance)
+                yield from (replace(source, weak=row.weak or source.weak) for source in found)
             elif row.group.startswith("@"):  # the reactions that belong to the agent's question
                 then = state.pending.then.get(row.group[1:], ()) if state.pending is not None else ()
                 yield _Source([[Line(text, frozenset()) for text in then if "{" not in text]])
@@ -353,7 +354,7 @@ class Listener:
     def _response(self, hearing: Hearing, state: State, chance: random.Random) -> Iterator[_Source]:
         """Yield the replies of the kinds that suit the utterance, the best kind first."""
         for _, kind in hearing.responses:
-            yield _Source(kind.lines("say"), kind)
+            yield _Source(kind.lines("say"), kind, weak=is_general(kind))
 
     def _opinion(self, hearing: Hearing, state: State, chance: random.Random) -> Iterator[_Source]:
         """Yield the agent's opinion, which is chosen once per conversation. The agent does not judge people."""

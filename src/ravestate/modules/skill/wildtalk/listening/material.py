@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import cache
 from importlib.resources import files
 from typing import Any
@@ -17,6 +17,8 @@ from .bank import Bank, read_bank
 from .moment import Line, Moment, roles_in
 from .state import LASTING
 
+PREFIX = "reply:"
+"""The beginning of the name of a kind of reply, because other moments may have the same name."""
 AGREEING = frozenset(("are", "were", "have", "do"))
 MOMENTS = ("about_the_talk", "advice", "everyday", "grown", "young", "questions", "life", "reactions", "moments")
 """The files of moments (situations in a conversation). Each moment names the moves that its phrases suit."""
@@ -53,7 +55,7 @@ class Material:
         self.bank: Bank = read_bank()
         self.heads = {name: frozenset[str](words) for name, words in _read("heads").items()}
         self.replies = _moments("replies")
-        self.responses = _moments("responses")
+        self.responses = {name: replace(one, name=PREFIX + name) for name, one in _moments("responses").items()}
         self.asked, self.areas = _moments("asked"), _moments("areas")
         self.vague = self.asked.pop("vague").words
         """Nouns that name nothing, such as *thing*."""

@@ -7,32 +7,59 @@ the kinds of reply that suit, and the kinds that only seem to suit.
 
 from __future__ import annotations
 
-from functools import cache
 from pathlib import Path
 
 from ravestate.language.classifier import Classifier
 
-from .material import Material
+from .material import PREFIX, Material
 from .moment import Moment
 
 LEAST = 0.2
 """The minimum probability at which a reply of a kind is said. Below, a sign of listening is better."""
-SURE = 0.5
-"""The minimum probability at which a kind takes precedence over the bank."""
+SURE = 0.4
+"""The minimum probability at which a kind of reply takes precedence over the bank, unless it is in `GENERAL`."""
+GENERAL = frozenset(("asks_fact", "asks_feeling", "asks_advice", "asks_favour", "tells_on", "answers", "nonsense"))
+"""Kinds of reply that say little. They never take precedence over the bank."""
 LIGHT = ("glad", "funny")
-"""The tones of kinds that do not suit a sad or grave utterance."""
+"""The tones of cheerful and funny replies."""
+_NETWORK = Classifier(Path(__file__).with_name("responses.onnx"))
 
 
-def responses_to(phrases: Material, text: str, *, dark: bool) -> list[tuple[float, Moment]]:
-    """Return the kinds of reply that suit an utterance in normal form, the best first, with their probabilities.
+def responses_to(
+    phrases: Material, text: str, before: str = "", *, dark: bool, sad: bool
+) -> list[tuple[float, Moment]]:
+    """Return the kinds of reply that suit an utterance, the best first, with their probabilities.
 
-    None before the network is loaded. `dark` says whether the utterance is sad or grave.
+    Before the network is loaded, there are none.
+
+    Args:
+        phrases: The replies.
+        text: The utterance in normal form.
+        before: The user's previous utterance in normal form; empty if there is none.
+        dark: Whether the utterance is sad or grave. If so, there are no cheerful or funny replies.
+        sad: Whether the conversation is sad. If so, there are no funny replies, and cheerful ones only if they surely suit.
     """
-    found = ((chance, phrases.responses[name]) for name, chance in network().ranked(text) if chance >= LEAST)
-    return [(chance, kind) for chance, kind in found if not (dark and kind.tone in LIGHT)]
+    ranked = network().ranked(text, before)
+    found = ((chance, phrases.responses[name]) for name, chance in ranked if chance >= LEAST)
+    return [(chance, kind) for chance, kind in found if not _is_too_light(kind, chance, dark=dark, sad=sad)]
 
 
-@cache
+def _is_too_light(kind: Moment, chance: float, *, dark: bool, sad: bool) -> bool:
+    if kind.tone not in LIGHT:
+        return False
+    return dark or (sad and (kind.tone == "funny" or chance < SURE))
+
+
+def surely_suits(found: list[tuple[float, Moment]]) -> bool:
+    """Return whether the best of the kinds takes precedence over the bank."""
+    return bool(found) and found[0][0] >= SURE and not is_general(found[0][1])
+
+
+def is_general(kind: Moment) -> bool:
+    """Return whether the replies of a kind say little."""
+    return kind.name.removeprefix(PREFIX) in GENERAL
+
+
 def network() -> Classifier:
     """Return the network, which all contexts share. It may not be loaded yet."""
-    return Classifier(Path(__file__).with_name("responses.onnx"))
+    return _NETWORK
