@@ -12,6 +12,7 @@ from quality.measure import labelled
 from ravestate.language.examples import bundled
 from ravestate.language.matcher import bundled_matcher
 from ravestate.modules.skill.wildtalk.listening import Heard, State
+from ravestate.modules.skill.wildtalk.listening import hearing as hearing_module
 from ravestate.modules.skill.wildtalk.listening.bank import Bank
 from ravestate.modules.skill.wildtalk.listening.hearing import hear, likely
 from ravestate.modules.skill.wildtalk.listening.material import Line, Moment, material
@@ -59,7 +60,10 @@ def test_a_repeated_utterance_gets_different_answers(text: str, talk: Any) -> No
     assert all(first != second for first, second in itertools.pairwise(said))
 
 
-def test_the_listener_takes_up_the_highlight_of_a_statement(begin: Callable[[int], Any]) -> None:
+def test_if_no_kind_of_reply_suits_the_listener_takes_up_the_highlight(
+    begin: Callable[[int], Any], monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setattr(hearing_module, "responses_to", lambda *_, **__: [])
     for seed in range(6):
         said = begin(seed).say("he came home with two rusty lanterns")
         assert "two rusty lanterns" in said.lower(), said
@@ -118,6 +122,7 @@ def test_a_likely_move_gets_an_answer_of_its_kind(text: str, move: str, talk: An
     fitting = {line.text for one in situations if move in one.moves or one.tone == "sad" for line in lines_of(one)}
     suiting = {line.text for one in material().bank.similar([text], text) for line in lines_of(one.moment)}
     told = {line.text for one in material().taking_up.values() for line in lines_of(one)}
+    suiting |= {line.text for _, kind in hearing.responses for line in lines_of(kind)}
     taken = hearing.taken is not None and any(said.endswith(text) for text in told)
     assert said in replies | fitting | suiting or (taken and move == "interest")
 

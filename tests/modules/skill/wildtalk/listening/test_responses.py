@@ -11,6 +11,7 @@ from ravestate.modules.skill.wildtalk.listening import Heard
 from ravestate.modules.skill.wildtalk.listening.hearing import hear
 from ravestate.modules.skill.wildtalk.listening.material import material
 from ravestate.modules.skill.wildtalk.listening.responses import LEAST, LIGHT, network, responses_to
+from ravestate.modules.skill.wildtalk.listening.state import State
 
 from .conftest import Talk, seen
 
@@ -38,7 +39,7 @@ def test_no_reply_belongs_to_two_kinds() -> None:
 @given(st.text(max_size=200), st.booleans())
 def test_the_kinds_come_with_their_probabilities_in_order(text: str, dark: bool) -> None:
     network().load()
-    chances = [chance for chance, _ in responses_to(material(), text, dark=dark, sad=False)]
+    chances = [chance for chance, _ in responses_to(material(), text, dark=dark)]
     assert chances == sorted(chances, reverse=True)
     assert sum(chances) <= 1.001 and all(chance >= LEAST for chance in chances)
 
@@ -46,13 +47,13 @@ def test_the_kinds_come_with_their_probabilities_in_order(text: str, dark: bool)
 @given(st.sampled_from(ROWS))
 def test_a_dark_utterance_gets_no_light_reply(text: str) -> None:
     network().load()
-    assert not any(kind.tone in LIGHT for _, kind in responses_to(material(), text, dark=True, sad=False))
+    assert not any(kind.tone in LIGHT for _, kind in responses_to(material(), text, dark=True))
 
 
 @given(st.sampled_from(ROWS))
-def test_a_sad_conversation_has_no_funny_reply(text: str) -> None:
-    network().load()
-    assert not any(kind.tone == "funny" for _, kind in responses_to(material(), text, dark=False, sad=True))
+def test_a_sad_conversation_has_a_light_reply_only_to_clear_joy(text: str) -> None:
+    hearing = hear(material(), Heard(text, seen(text)), State(tone="sad", turns=2))
+    assert "rejoice" in hearing.moves or not any(kind.tone in LIGHT for _, kind in hearing.responses)
 
 
 def test_a_user_who_wants_no_questions_is_asked_none(talk: Talk) -> None:
@@ -67,7 +68,7 @@ def test_the_replies_of_a_kind_take_turns() -> None:
     talk, texts = Talk(), {line.text for line in lines}
     said = [talk.say("haha " * (1 + number % 3)) for number in range(len(lines))]
     found = [answer for answer in said if answer in texts]
-    assert len(found) > len(lines) / 2
+    assert len(found) >= 4
     assert len(set(found)) == len(found)
 
 

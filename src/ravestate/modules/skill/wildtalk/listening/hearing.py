@@ -27,7 +27,7 @@ from .bank import CLOSE, Found
 from .echo import words_of
 from .following import follow_up_in, rest_of
 from .grave import is_grave, is_medical
-from .lookup import ALIKE, is_dark, near_in
+from .lookup import ALIKE, KNOWN, is_dark, near_in
 from .material import Material
 from .moment import Moment
 from .responses import responses_to, surely_suits
@@ -191,7 +191,8 @@ def _understand(found: Hearing, phrases: Material, heard: Heard, seen: Analysis,
     found.near = near_in(phrases, seen, asking, state, feeling, being=roles.being)
     dark = is_dark(seen, found.near) or found.sad
     before = normalise(state.before).unguessed
-    found.responses = responses_to(phrases, seen.normal.unguessed, before, dark=dark, sad=state.tone == "sad")
+    sad = state.tone == "sad" and "rejoice" not in found.moves  # soon after a loss, only clear joy gets a glad reply
+    found.responses = responses_to(phrases, seen.normal.unguessed, before, dark=dark or sad)
     found.tone = "sad" if dark else _tone(seen, found.moves, feeling)
     found.mood = "quiet" if state.tone == "sad" and found.tone in ("", "glad", "funny") else found.tone
     nearest = found.near[0] if found.near else Found(0.0, 0.0, Moment("", {}), "")
@@ -208,14 +209,12 @@ def _understand(found: Hearing, phrases: Material, heard: Heard, seen: Analysis,
     called = _called_in(seen, statement)
     grounded = found.moment == "just_why" and "ground" in roles.values
     bound = score >= SURE and (found.moment == CHANGING or grounded)
+    kin = feeling is not None and roles.being is not None and size <= BRIEFLY  # "my mother is ill"
+    specific = not (bound or (kind and size <= BARE))
     alike = (
         nearest.fit >= ALIKE
-        and not (bound or (kind and size <= BARE))
-        and (
-            bool(nearest.moment.follows)
-            or nearest.score >= EXACT
-            or not (score >= EXACT or (feeling and roles.being and size <= BRIEFLY))
-        )
+        and specific
+        and (bool(nearest.moment.follows) or nearest.score >= EXACT or not (score >= EXACT or kin))
     )
     tags = {
         kind: True,
@@ -255,7 +254,7 @@ def _understand(found: Hearing, phrases: Material, heard: Heard, seen: Analysis,
         "echoed": found.taken is not None,
         "addressed": found.taken is not None and found.taken.told.subject == "yours",
         "settled": len(found.moves) == 1,
-        "responsive": surely_suits(found.responses) and not (bound or (kind and size <= BARE)),
+        "responsive": surely_suits(found.responses) and specific and not kin and nearest.fit < KNOWN,
         "broken": _is_broken(seen, size),
         **dict.fromkeys((*found.moves, *turns_in(seen.text, seen.sentences)), True),
     }  # fmt: skip

@@ -18,7 +18,7 @@ from .following import is_answer
 from .games import Played, Turn
 from .grave import is_crisis
 from .hearing import ASKED, Heard, Hearing, feeling_of, hear, is_living
-from .lookup import ALIKE, is_dark, near_in
+from .lookup import ALIKE, KNOWN, is_dark, near_in
 from .material import Material, material
 from .moment import Line, Moment
 from .repair import may_repair, repair_in
@@ -35,8 +35,6 @@ SHOWS = ("joke", "song", "story", "play")
 BRIEF, BRIEFLY = 12, 12
 """The maximum length of a sign of listening such as *mhm*, in characters; the number of answers until it may return."""
 STANCES = ("like", "curious", "cool")
-KNOWN = 0.57
-"""The minimum probability of suiting at which an entry of the bank takes precedence over other modules."""
 PERHAPS = 0.42
 """The minimum rough estimate of that probability at which the listener computes it exactly. 95 % of the entries that
 reach `KNOWN` also reach this estimate."""

@@ -14,9 +14,9 @@ from ravestate.language.classifier import Classifier
 from .material import PREFIX, Material
 from .moment import Moment
 
-LEAST = 0.2
+LEAST = 0.25
 """The minimum probability at which a reply of a kind is said. Below, a sign of listening is better."""
-SURE = 0.4
+SURE = 0.3
 """The minimum probability at which a kind of reply takes precedence over the bank, unless it is in `GENERAL`."""
 GENERAL = frozenset(("asks_fact", "asks_feeling", "asks_advice", "asks_favour", "tells_on", "answers", "nonsense"))
 """Kinds of reply that say little. They never take precedence over the bank."""
@@ -25,9 +25,7 @@ LIGHT = ("glad", "funny")
 _NETWORK = Classifier(Path(__file__).with_name("responses.onnx"))
 
 
-def responses_to(
-    phrases: Material, text: str, before: str = "", *, dark: bool, sad: bool
-) -> list[tuple[float, Moment]]:
+def responses_to(phrases: Material, text: str, before: str = "", *, dark: bool) -> list[tuple[float, Moment]]:
     """Return the kinds of reply that suit an utterance, the best first, with their probabilities.
 
     Before the network is loaded, there are none.
@@ -36,18 +34,11 @@ def responses_to(
         phrases: The replies.
         text: The utterance in normal form.
         before: The user's previous utterance in normal form; empty if there is none.
-        dark: Whether the utterance is sad or grave. If so, there are no cheerful or funny replies.
-        sad: Whether the conversation is sad. If so, there are no funny replies, and cheerful ones only if they surely suit.
+        dark: Whether the utterance or the conversation is sad or grave. If so, there are no cheerful or funny replies.
     """
     ranked = network().ranked(text, before)
     found = ((chance, phrases.responses[name]) for name, chance in ranked if chance >= LEAST)
-    return [(chance, kind) for chance, kind in found if not _is_too_light(kind, chance, dark=dark, sad=sad)]
-
-
-def _is_too_light(kind: Moment, chance: float, *, dark: bool, sad: bool) -> bool:
-    if kind.tone not in LIGHT:
-        return False
-    return dark or (sad and (kind.tone == "funny" or chance < SURE))
+    return [(chance, kind) for chance, kind in found if not (dark and kind.tone in LIGHT)]
 
 
 def surely_suits(found: list[tuple[float, Moment]]) -> bool:
