@@ -1,7 +1,7 @@
 """Measure the kinds of reply that the listening skill finds for an utterance.
 
-The authors of `responses_rows.tsv` wrote whole conversations with a companion, and chose up to four kinds of reply that
-suit each utterance. A ``!`` marks a kind that only seems to suit. The network is not trained on these utterances.
+The authors of `responses_rows.tsv` wrote whole conversations with a companion, and chose the kinds of reply that suit
+each utterance. A ``!`` marks a kind that only seems to suit. The network is not trained on these utterances.
 """
 
 from __future__ import annotations

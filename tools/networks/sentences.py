@@ -1,6 +1,6 @@
 """Train a classifier on the files in a folder, and write it into the module that uses it.
 
-python tools/networks/sentences.py answers            train; a few minutes on 2 cores
+python tools/networks/sentences.py answers            train; 3 to 20 minutes on 2 cores
 python tools/networks/sentences.py answers --check    exit code 1 if the sentences have changed
 
 Each line of the files has a text and its classes, with a tab between them: see the README. Training
@@ -26,9 +26,9 @@ EPOCHS, BATCH, RATE = 9, 128, 2e-3
 SHARES = 1.0, 0.6, 0.4, 0.3
 """The relative shares of the first class of a text, the second..."""
 SPREAD = 0.1
-"""The share of the probability that all classes get, against overconfidence."""
+"""Label smoothing: the share of the target that is spread over all classes."""
 WRONG = 0.5
-"""The weight of the classes that are marked as wrong."""
+"""The weight of the penalty for classes that are marked as wrong."""
 MODULES = SRC / "modules"
 OUT = {
     "answers": MODULES / "meta" / "nlp" / "answers.onnx",

@@ -17,7 +17,7 @@ from ravestate.language.network import BEFORE, EARLIER
 
 SRC = Path(__file__).parents[2] / "src" / "ravestate"
 KEPT = 0.7
-"""The share of texts that the network sees together with the utterance before, so that it can also do without."""
+"""The chance that a text is read together with the utterance before it. The network must also work without it."""
 WIDTH = 384
 """The length of a token's vector after one layer."""
 
@@ -81,7 +81,7 @@ def _with_before(row: Row) -> tuple[Any, list[int]]:
     return np.concatenate([earlier, row.vectors]), [EARLIER] * len(earlier) + row.marks
 
 
-def mixer(torch: Any, layers: int, kinds: int = 2) -> Any:
+def mixer(torch: Any, layers: int, marks: int = 2) -> Any:
     """Return the first part of all networks: a weighted mean of the layers, plus a vector for each kind of mark."""
     nn = torch.nn
 
@@ -90,7 +90,7 @@ def mixer(torch: Any, layers: int, kinds: int = 2) -> Any:
             super().__init__()
             self.weights = nn.Parameter(torch.zeros(layers))
             self.norms = nn.ModuleList([nn.LayerNorm(WIDTH) for _ in range(layers)])
-            self.mark = nn.Embedding(kinds, WIDTH)
+            self.mark = nn.Embedding(marks, WIDTH)
             nn.init.normal_(self.mark.weight, 0, 0.1)
 
         def forward(self, vectors: Any, marks: Any) -> Any:

@@ -10,13 +10,13 @@ from .network import Network
 REMEMBERED = 256
 """The number of texts whose classes a classifier keeps, because modules may ask for a text again."""
 RANKED = 5
-"""The number of classes that a classifier returns at most."""
+"""The maximum number of classes that `Classifier.ranked` returns."""
 LONGEST = 300
 """The maximum number of characters that a classifier reads."""
 
 
 class Classifier(Network):
-    """A small recurrent network that reads a whole text. Thread-safe.
+    """A small recurrent network that reads the first `LONGEST` characters of a text. Thread-safe.
 
     `Matcher` learns from a few examples when the program starts. A classifier needs thousands of examples and a
     training beforehand, and is more often right.
@@ -42,13 +42,13 @@ class Classifier(Network):
         return next(iter(self.ranked(text)), ("", 0.0))
 
     def ranked(self, text: str, before: str = "") -> tuple[tuple[str, float], ...]:
-        """Return the likeliest classes of a text with their probabilities, at most `RANKED`; none before `load`.
+        """Return the likeliest classes of a text with their probabilities; none before `load`, or for a blank text.
 
         Args:
             text: A text in normal form.
             before: The utterance before, if the network reads it.
         """
-        text, before = text[:LONGEST], before[:LONGEST]  # long texts would fill the memory of the latest texts
+        text, before = text[:LONGEST], before[:LONGEST]  # long texts would fill the cache
         return self._latest(text, before) if self.loaded and text.strip() else ()
 
     def _ranked(self, text: str, before: str) -> tuple[tuple[str, float], ...]:

@@ -29,15 +29,15 @@ LATEST = 16
 
 
 class Network:
-    """An ONNX file that reads the vectors of a text's tokens, after several layers of the encoder. Thread-safe."""
+    """An ONNX file that reads each token's vectors after several layers of the encoder. Thread-safe."""
 
     def __init__(self, file: Path) -> None:
         """Choose a file; load nothing yet.
 
         Args:
-            file: An ONNX file with the inputs ``vectors`` (1, tokens, layers * d), ``marks`` (1, tokens: 1 for a capital, `EARLIER` for
-                the utterance before) and perhaps ``context`` (1,). Its metadata has ``labels`` with semicolons between them,
-                and ``before`` (1) if it reads the utterance before.
+            file: An ONNX file. Its inputs are ``vectors`` (1, tokens, layers * 384), ``marks`` (1, tokens: 1 for a capital,
+                `EARLIER` for the utterance before) and perhaps ``context`` (1,). Its metadata has ``labels`` with
+                semicolons between them, and ``before`` (1) if it reads the utterance before.
         """
         self._file = file
         self._lock = threading.Lock()
@@ -96,7 +96,8 @@ class Network:
         Args:
             text: One or more sentences in normal form.
             context: The number of the context, if the network has contexts.
-            before: The utterance before, if the network reads it. Its tokens come first.
+            before: The utterance before. If the network reads it, its tokens come first, and the outputs have more tokens
+                than the spans.
         """
         import numpy as np
 

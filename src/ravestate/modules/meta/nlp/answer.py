@@ -51,7 +51,7 @@ _FILLER = re.compile(r"^\W*(?:(?:well|oh|ah|uh|um|er|hm+|so)\b[\s,.!…]*)+(?=\w
 _RETURNED = re.compile(r"[\s,.!;]+(?:and|what about|how about) (?:you|yours|yourself)\W*$", re.IGNORECASE)
 """A question back, after an answer: *yes, and you?*."""
 _REPEATED = re.compile(r"\b(\w+)(?:[\s,]+\1\b)+", re.IGNORECASE)
-LONGEST = 400
+LONGEST = 300
 """The maximum number of characters that are read, because answers are short."""
 _YES = (
     "yes|yeah|yep|yup|yea|aye|sure|ok|okay|of course|certainly|absolutely|definitely|please do|do it|do that|go ahead|i am sure|"

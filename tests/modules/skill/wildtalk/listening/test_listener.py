@@ -60,10 +60,15 @@ def test_a_repeated_utterance_gets_different_answers(text: str, talk: Any) -> No
     assert all(first != second for first, second in itertools.pairwise(said))
 
 
+def no_responses(*_: Any, **__: Any) -> list[Any]:
+    """Stand in for `responses_to`: no kind of reply suits."""
+    return []
+
+
 def test_if_no_kind_of_reply_suits_the_listener_takes_up_the_highlight(
     begin: Callable[[int], Any], monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    monkeypatch.setattr(hearing_module, "responses_to", lambda *_, **__: [])
+    monkeypatch.setattr(hearing_module, "responses_to", no_responses)
     for seed in range(6):
         said = begin(seed).say("he came home with two rusty lanterns")
         assert "two rusty lanterns" in said.lower(), said

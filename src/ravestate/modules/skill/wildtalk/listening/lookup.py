@@ -27,8 +27,8 @@ ALIKE = 0.47
 """The minimum probability of suiting at which an entry of the bank is used. If no entry reaches it, a reply that takes up
 the user's words is better."""
 KNOWN = 0.57
-"""The minimum probability of suiting at which an entry of the bank takes precedence over other modules, and over the kinds
-of reply that surely suit."""
+"""The minimum probability of suiting at which an entry of the bank takes precedence over other modules. It also
+takes precedence over the kinds of reply that surely suit."""
 WHOLE = 30
 """The maximum number of words of an utterance that is compared with the bank as a whole."""
 LONG, LONGER = 10, 0.75

@@ -1,8 +1,8 @@
 """Find the kinds of reply that suit an utterance: *you can be proud of that*, *what a shame*...
 
-Similar words may need opposite replies: *my goldfish swims upside down* is no joke. So a small network
-(``responses.onnx``, trained in ``tools/networks``) learnt from thousands of utterances, for each of which readers chose
-the kinds of reply that suit, and the kinds that only seem to suit.
+Similar words may need opposite replies: *my goldfish swims upside down* is no joke. A small network (``responses.onnx``)
+has learnt from thousands of utterances which kinds suit, and which only seem to suit. ``tools/networks`` has these
+utterances.
 """
 
 from __future__ import annotations
@@ -14,10 +14,11 @@ from ravestate.language.classifier import Classifier
 from .material import PREFIX, Material
 from .moment import Moment
 
-LEAST = 0.25
+LEAST = 0.15
 """The minimum probability at which a reply of a kind is said. Below, a sign of listening is better."""
-SURE = 0.3
-"""The minimum probability at which a kind of reply takes precedence over the bank, unless it is in `GENERAL`."""
+SURE = 0.25
+"""The minimum probability at which a kind of reply may take precedence over the bank, unless it is in `GENERAL`. See the
+tag `responsive` in hearing.py."""
 GENERAL = frozenset(("asks_fact", "asks_feeling", "asks_advice", "asks_favour", "tells_on", "answers", "nonsense"))
 """Kinds of reply that say little. They never take precedence over the bank."""
 LIGHT = ("glad", "funny")
