@@ -16,15 +16,15 @@ FLOORS = {
     ("triples, clean", "exact"): 0.97,
     ("triples, typed", "exact"): 0.95,
     ("yes and no", "right"): 0.87,
-    ("questions, clean", "right"): 0.88,
-    ("questions, typed", "right"): 0.90,
+    ("questions, clean", "right"): 0.90,
+    ("questions, typed", "right"): 0.94,
     ("about the agent", "F1"): 0.92,  # the labels are older than some topics, so these topics count as wrong
     ("out of scope", "right"): 0.99,
     ("facts", "right"): 0.70,
     ("facts, tricky", "nothing wrong"): 0.94,
     ("feelings", "right"): 0.92,
     ("followups", "right"): 0.53,
-    ("small talk", "taken up"): 0.71,  # the agent drops doubtful replies, and plain replies name the topic less often
+    ("small talk", "taken up"): 0.54,  # a reply of the right kind often names no topic, but readers prefer it
 }
 
 
