@@ -49,3 +49,17 @@ def test_a_report_is_not_taken_for_the_name_that_the_agent_asked_for(text: str) 
     seen = analyse(text, pipeline(""))
     meaning = understand(seen, Talk().asking("name", 0.0).speaking(), {}, 1.0, 90.0)
     assert not [fact for fact in meaning.facts if fact.topic == "name"]
+
+
+@pytest.mark.parametrize("name", ["Zosia", "Kevin", "Concetta"])
+@pytest.mark.parametrize(
+    "frame",
+    ["I go now, {} waits for me by the tram", "I named it {}", "only me now, and {}", "the neighbour brought me {}"],
+)
+def test_the_name_of_somebody_else_is_not_the_users_name(frame: str, name: str) -> None:
+    assert "name" not in facts(frame.format(name))
+
+
+@pytest.mark.parametrize("frame", ["{} speaking", "people call me {}", "you can call me {}", "I'm called {}"])
+def test_an_introduction_in_other_words_gives_the_users_name(frame: str) -> None:
+    assert facts(frame.format("Zosia"))["name"] == ("Zosia",)

@@ -36,6 +36,10 @@ PEOPLE = frozenset(topic.name for topic in TOPICS.values() if topic.kind in ("pe
 _UNUSUAL = re.compile(r"[^\w\s.,;:!?'’\"-]")
 """Characters that no word of English has. The network has not learnt them."""
 _PARTLY = re.compile(r"(?:n['’]t|\bnot) (?:just|only|merely|simply)\b|\bbecause\b", re.IGNORECASE)
+_SPEAKING = frozenset(("speak", "talk", "call", "be"))
+_NAMING = frozenset(("call", "name", "christen", "baptise", "dub", "say", "use", "prefer", "be"))
+"""Verbs with which users say their own name: *Ada speaking*, *just say Kim*."""
+_OTHERS = frozenset(("it", "him", "her", "them"))
 _PRONOUN = re.compile(r"\b(?:he|she|his|her|hers|him|its?)\b", re.IGNORECASE)
 
 
@@ -199,9 +203,28 @@ class Reader:
         return not verbs and any(among(one.wrong.text, known) for one in pairs)
 
     def _is_anothers(self, tag: Tag) -> bool:
-        """Return whether a relative is somebody else's: *he has a new girlfriend called Tamara*."""
+        """Return whether a name or a relative is somebody else's.
+
+        Examples: *Zosia waits for me*, *I named it Kevin*, *he has a new girlfriend called Tamara*.
+        """
+        if tag.label == NAME and any(map(self._names_another, self._words_of(tag))):
+            return True
         having = (said for said in self.seen.statements if tag.label == self.relative(said.object.head))
         return any(said.subject.text.lower() in ("he", "she", "they") for said in having)
+
+    def _words_of(self, tag: Tag) -> list[Word]:
+        return [word for word in self.tree.words if tag.start <= word.start < tag.end]
+
+    def _names_another(self, word: Word) -> bool:
+        """Return whether a name does something, is done something to, or belongs to *it* or to *me and ...*."""
+        head = self.tree.head(word)
+        if word.dep == "conj":
+            return head.low in ("me", "i", "us")
+        if word.dep == "nsubj":
+            return head.pos == "VERB" and head.lemma not in _SPEAKING
+        if word.dep == "dobj":
+            return head.lemma not in _NAMING
+        return word.dep == "oprd" and any(other.low in _OTHERS for other in self.tree.children(head, "dobj", "nsubj"))
 
     def _ended(self) -> dict[str, tuple[str, ...]]:
         """Return the topics that end as a whole: *I quit my job*, *I have no hobbies*."""
