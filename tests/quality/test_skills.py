@@ -53,9 +53,9 @@ def test_facts_are_understood_in_sentences_that_nobody_has_seen() -> None:
 def test_most_kinds_of_reply_that_the_listener_chooses_suit_and_few_are_wrong() -> None:
     result = responses.measured()
     print(result.shares, *result.misses, sep="\n  ")
-    assert result.shares["suits"] >= 0.68
-    assert result.shares["wrong"] <= 0.08
-    assert result.shares["likely"] >= 0.5
+    assert result.shares["suits"] >= 0.6
+    assert result.shares["wrong"] <= 0.06
+    assert result.shares["likely"] >= 0.65
 
 
 @pytest.mark.parametrize("name", skills.SETS)
