@@ -45,7 +45,7 @@ help: ## this list
 
 .PHONY: demo
 demo: $(DONE)/demo $(DONE)/sentences native ## set up and open a page with the agent and its debugger
-	@$(MAKE) $(DONE)/voice || echo 'Speech could not be set up: the page has no microphone button. To try again: make voice'
+	@$(MAKE) -s $(DONE)/voice || echo 'Speech could not be set up: the page has no microphone button. To try again: make voice'
 	@$(BIN)/ravestate board $(ARGS)
 
 .PHONY: chat

@@ -120,7 +120,7 @@ def test_without_a_language_model_the_page_says_how_to_get_one(
     monkeypatch.setenv("RAVESTATE_WILDTALK_SEARCH", "true")
     monkeypatch.setattr(local_servers, "PORTS", {})
     monkeypatch.setattr(found_models, "folders", list)
-    note = "Small talk without a language model: the agent listens. To talk with a model: ravestate model get."
+    note = "Small talk with authored replies. To talk with a language model: ravestate model get."
     assert main(["board", "wildtalk"]) == 0
     assert served[0].settings["webio"].note == note
     assert capsys.readouterr().err == f"ravestate board: s{note[1:-1]}\n"

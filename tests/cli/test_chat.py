@@ -104,7 +104,7 @@ def test_one_line_says_which_model_makes_small_talk(
     monkeypatch.setenv("RAVESTATE_WILDTALK_SEARCH", "true")
     monkeypatch.setattr(local_servers, "PORTS", {})
     monkeypatch.setattr(found_models, "folders", list)
-    line = "ravestate chat: small talk without a language model: the agent listens. To talk with a model: ravestate model get\n"
+    line = "ravestate chat: small talk with authored replies. To talk with a language model: ravestate model get\n"
     assert call(capsys, "chat") == (0, "", line)
     assert started[-1][1]["settings"]["wildtalk"]["backend"] == "listen"
     code, _, errors = call(capsys, "chat", "--set", "wildtalk.model=qwen3-4b")

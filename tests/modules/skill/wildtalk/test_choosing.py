@@ -61,7 +61,7 @@ def install(name: str = "qwen2.5-0.5b") -> Path:
 def test_without_a_model_the_listening_skill_is_chosen_and_the_text_says_how_to_get_a_model(machine: Machine) -> None:
     choice = chosen()
     assert choice.settings.backend == "listen"
-    assert choice.text.endswith("the agent listens. To talk with a model: ravestate model get")
+    assert choice.text.endswith("authored replies. To talk with a language model: ravestate model get")
     machine.packages.remove("xllamacpp")
     assert chosen().text.endswith("pip install 'ravestate[wildtalk]' , then ravestate model get")
 

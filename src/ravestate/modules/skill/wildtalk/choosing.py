@@ -64,7 +64,7 @@ def choose(settings: Settings) -> Choice:
     install = "" if runs_files else "pip install 'ravestate[wildtalk]' , then "
     return Choice(
         settings.model_copy(update={"backend": "listen"}),
-        f"small talk without a language model: the agent listens. To talk with a model: {install}{FETCH}",
+        f"small talk with authored replies. To talk with a language model: {install}{FETCH}",
     )
 
 

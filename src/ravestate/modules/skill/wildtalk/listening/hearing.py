@@ -30,7 +30,8 @@ from .grave import is_grave, is_medical
 from .lookup import ALIKE, KNOWN, is_dark, near_in
 from .material import Material
 from .moment import Moment
-from .responses import responses_to, surely_suits
+from .responses import LEAST, responses_to, surely_suits
+from .responses import SURE as SUITED
 from .roles import Roles, has_verb, is_request, roles_of, turned
 from .state import State
 from .taking_up import Taken, taken_from
@@ -68,6 +69,8 @@ LONG = 12
 BRIEFLY = 5
 """The maximum number of words of a feeling about a relative or a pet, such as *my mother is ill*. Such feelings have
 their own phrases, which take precedence over the bank."""
+UNKNOWN = ("fact", "heard_of", "about_you")
+"""Kinds of questions (asks.yaml) that only another module, or an area of life, can answer."""
 ENDINGS = ("stop", "quiet")
 """Acts that count only if their confidence is high."""
 _OFFER = re.compile(r"(?:do you want|would you like|shall i|can i).{0,9} (?:know|hear|see|tell|show)\b", re.IGNORECASE)
@@ -254,7 +257,10 @@ def _understand(found: Hearing, phrases: Material, heard: Heard, seen: Analysis,
         "echoed": found.taken is not None,
         "addressed": found.taken is not None and found.taken.told.subject == "yours",
         "settled": len(found.moves) == 1,
-        "responsive": surely_suits(found.responses) and specific and not kin and nearest.fit < KNOWN,
+        "responsive": surely_suits(found.responses, LEAST if _knows_nothing(found.asked) else SUITED)
+        and specific
+        and not kin
+        and nearest.fit < KNOWN,
         "broken": _is_broken(seen, size),
         **dict.fromkeys((*found.moves, *turns_in(seen.text, seen.sentences)), True),
     }  # fmt: skip
@@ -269,6 +275,11 @@ def _understand(found: Hearing, phrases: Material, heard: Heard, seen: Analysis,
         highlight=found.taken.highlight if found.taken else "",
         **(found.asked.values if found.asked else {}),
     )
+
+
+def _knows_nothing(asked: Asked | None) -> bool:
+    """Return whether the only answer to a question is that the agent does not know: *did you hear that racket?*"""
+    return asked is not None and asked.kind in UNKNOWN and not asked.own
 
 
 def _tone(seen: Analysis, moves: Sequence[str], feeling: Moment | None) -> str:

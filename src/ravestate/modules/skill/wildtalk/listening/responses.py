@@ -42,9 +42,9 @@ def responses_to(phrases: Material, text: str, before: str = "", *, dark: bool) 
     return [(chance, kind) for chance, kind in found if not (dark and kind.tone in LIGHT)]
 
 
-def surely_suits(found: list[tuple[float, Moment]]) -> bool:
-    """Return whether the best of the kinds takes precedence over the bank."""
-    return bool(found) and found[0][0] >= SURE and not is_general(found[0][1])
+def surely_suits(found: list[tuple[float, Moment]], least: float = SURE) -> bool:
+    """Return whether the best of the kinds takes precedence over the bank, because its probability is at least `least`."""
+    return bool(found) and found[0][0] >= least and not is_general(found[0][1])
 
 
 def is_general(kind: Moment) -> bool:
