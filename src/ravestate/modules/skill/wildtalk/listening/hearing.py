@@ -69,7 +69,7 @@ LONG = 12
 BRIEFLY = 5
 """The maximum number of words of a feeling about a relative or a pet, such as *my mother is ill*. Such feelings have
 their own phrases, which take precedence over the bank."""
-UNKNOWN = ("fact", "heard_of", "about_you")
+UNKNOWN = ("heard_of", "about_you")
 """Kinds of questions (asks.yaml) that only another module, or an area of life, can answer."""
 ENDINGS = ("stop", "quiet")
 """Acts that count only if their confidence is high."""
