@@ -51,7 +51,7 @@ def test_a_model_is_fetched_listed_used_and_removed(hub: Hub, place: Path, capsy
         f"removed {place / 'tiny.gguf'}\nthere is no longer a default model\n",
         "",
     )
-    assert "Now: small talk without a language model" in call(capsys, "model", "list")[1]
+    assert "Now: small talk with authored replies" in call(capsys, "model", "list")[1]
     code, _, errors = call(capsys, "model", "remove", "tiny")
     assert (code, errors) == (1, f"ravestate model: tiny is not installed in {place}\n")
 

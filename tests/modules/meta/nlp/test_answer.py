@@ -9,7 +9,9 @@ from hypothesis import strategies as st
 from quality.measure import labelled
 from ravestate.language.classifier import Classifier
 from ravestate.modules.meta.nlp import answer
+from ravestate.modules.meta.nlp.analysis import analyse
 from ravestate.modules.meta.nlp.answer import YesNo, yesno_of
+from ravestate.modules.meta.nlp.pipeline import pipeline
 
 MEANINGS = (
     YesNo(2, 0, False),
@@ -67,3 +69,10 @@ def test_all_parts_of_an_answer_decide_its_meaning() -> None:
     assert yesno_of("yes, and you?") == yesno_of("yes")
     assert yesno_of("not really, no").no
     assert yesno_of("yes, but not now").no and yesno_of("no, I guess").no == 1
+
+
+def test_a_letter_is_no_answer_unless_it_stands_for_one() -> None:
+    answer.answers().load()
+    assert not any(yesno_of(text) for text in ("A.", "b", "o", "?", ""))
+    assert not analyse("a" * 300, pipeline("")).yesno
+    assert yesno_of("Yes.").yes

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import sys
 from pathlib import Path
 
 import pytest
@@ -27,7 +28,8 @@ def test_common_questions_need_no_sentence_model(
     text: str, kind: QuestionWord, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     unloaded = Classifier(Path("missing.onnx"))
-    monkeypatch.setattr(inquiry, "kinds", lambda: unloaded)
+    for module in (inquiry, sys.modules[analyse.__module__]):  # `nlp.analysis` is a slot
+        monkeypatch.setattr(module, "kinds", lambda: unloaded)
     assert question_of(text) is kind
     assert question_of("The lift has stopped.") is None
     assert question_of("The lift has stopped?") is QuestionWord.YES_NO

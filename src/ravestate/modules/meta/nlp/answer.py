@@ -61,6 +61,8 @@ _YES = (
 _BEGINS = re.compile(rf"\W*(?:(?:oh|well|so)\W+)*(?:{_YES})(?!\w)", re.IGNORECASE)
 _ONLY = re.compile(rf"{_BEGINS.pattern}(?:\W+(?:{_YES}|please|thanks|thank you|now|all|everything))*\W*", re.IGNORECASE)
 _REFUSES = re.compile(r"\b(?:no|not|never|do ?nt|nothing|stop|cancel|leave|wait)\b|n['’]t\b", re.IGNORECASE)
+_LETTER = re.compile(r"[\W_]*[^ynk\W\d_]?[\W_]*", re.IGNORECASE)
+"""A single letter that is no answer: a key was hit or held down. The network has not learnt such letters."""
 _EMOJI = re.compile(r"\W*([👍👎])")
 _NETWORK = Classifier(Path(__file__).with_name("answers.onnx"))
 
@@ -74,6 +76,8 @@ def yesno_of(text: str) -> YesNo:
     """
     if emoji := _EMOJI.match(text):
         return YesNo(2, 0, False) if emoji[1] == "👍" else YesNo(0, 2, False)
+    if _LETTER.fullmatch(text):
+        return YesNo()
     text = _FILLER.sub("", text)
     text = _REPEATED.sub(r"\1", _RETURNED.sub(".", text[:LONGEST]))
     name = _PLAIN.get(plain(text)) or answers().best(text)[0]
