@@ -9,8 +9,9 @@ from ravestate.language.examples import bundled
 from ravestate.language.moves import Move, bundled_moves
 from ravestate.language.normal import normalise
 from ravestate.language.sentences import sentences
-from ravestate.modules.skill.wildtalk.listening.hearing import SURE, Hearing, asking_sentence, likely, moment_of
+from ravestate.modules.skill.wildtalk.listening.hearing import asking_sentence, likely
 from ravestate.modules.skill.wildtalk.listening.material import material
+from ravestate.modules.skill.wildtalk.listening.meaning import SURE, moment_of
 
 ROWS = labelled("moves_rows")
 
@@ -49,8 +50,8 @@ def test_in_unseen_conversations_most_situations_that_the_listener_finds_belong_
     fitting: list[bool] = []
     for text, move in ROWS:
         read = analysed(text)
-        hearing = Hearing(set(), moves=likely(material(), read))
-        found, _, score = moment_of(material(), read, hearing, asking_sentence(read))
+        moves = likely(material(), read)
+        found, _, score = moment_of(material(), read, set(), moves, None, asking_sentence(read))
         if found is not None and score >= SURE:
             fitting.append(move in found.moves)
     assert len(fitting) >= 30

@@ -1,4 +1,6 @@
-"""An utterance as the listener sees it: tags for the table of answers (order.yaml), roles, and meanings.
+"""An utterance as the listener sees it: tags for the table of answers (order.yaml), and roles.
+
+`meaning` finds the feelings, acts and moments, and `responses` the kinds of reply.
 
 A *moment* is a situation in a conversation that has its own phrases, such as good news. A *move* is the next step of a
 good listener, such as to console. A *role* is a placeholder in a phrase. An *act* is what an utterance does, such as
@@ -13,8 +15,6 @@ from dataclasses import dataclass, field, replace
 
 from ravestate.language.acts import is_playful
 from ravestate.language.contractions import word_set
-from ravestate.language.feelings import SORROWS
-from ravestate.language.matcher import Match
 from ravestate.language.nonsense import is_nonsense
 from ravestate.language.normal import normalise, plain
 from ravestate.modules.meta.nlp.analysis import ADVICE, Analysis
@@ -29,6 +29,7 @@ from .following import follow_up_in, rest_of
 from .grave import is_grave, is_medical
 from .lookup import ALIKE, KNOWN, is_dark, near_in
 from .material import Material
+from .meaning import BRIEFLY, EXACT, MEANT, SAD, SURE, TURNED, feeling_of, fits_move, meanings_of, moment_of
 from .moment import Moment
 from .responses import LEAST, responses_to, surely_suits
 from .responses import SURE as SUITED
@@ -39,40 +40,18 @@ from .tones import may_be_dark, tone_of
 from .tongue import is_number, tongue_of
 from .turns import is_leaving, turns_in
 
-SURE, MEANT = 0.85, 0.7
-"""The minimum confidences at which a moment and an act decide the answer."""
-EXACT = 0.97
-"""The minimum confidence at which a moment decides the answer even if it suits no likely move."""
 CHANGING = "no_questions"
 """The moment in which the user wants no more questions. No entry of the bank takes precedence over it."""
 BARE = 3
 """The maximum number of words of an answer that only says yes or no. The bank is not searched for such an answer."""
-FINER = 0.1
-"""The bonus of a moment over feelings and acts, because a moment is more specific."""
-FELT, GLAD, AMAZED, NEVER = 0.65, 0.8, 0.9, 2.0
-"""The minimum confidences at which a sad feeling, any other feeling, and astonishment decide the answer. No confidence
-reaches `NEVER`."""
-TURNED = 0.95
-"""The minimum confidence at which a glad feeling or a moment that is not sad ends a sad tone."""
-CLOUDED = 0.85
-"""The minimum confidence at which a sad moment ends a glad tone."""
-ASKED = 0.8
-"""The minimum confidence in a request at which the agent follows it."""
-FEW = 0.75
-"""The minimum confidence in the act or the feeling of a short sentence."""
 PARTING = 0.66
 """The minimum confidence in a farewell as the next move at which the utterance counts as a farewell."""
 SHORTLY = 7
 """The maximum number of words of a statement that is repeated as a whole."""
 LONG = 12
 """The minimum number of words of an utterance that probably gives the reason for the user's feeling."""
-BRIEFLY = 5
-"""The maximum number of words of a feeling about a relative or a pet, such as *my mother is ill*. Such feelings have
-their own phrases, which take precedence over the bank."""
 UNKNOWN = ("heard_of", "about_you")
 """Kinds of questions (asks.yaml) that only another module, or an area of life, can answer."""
-ENDINGS = ("stop", "quiet")
-"""Acts that count only if their confidence is high."""
 _OFFER = re.compile(r"(?:do you want|would you like|shall i|can i).{0,9} (?:know|hear|see|tell|show)\b", re.IGNORECASE)
 """The user offers to tell the agent something."""
 _MACHINES = word_set("robot bot machine computer program ai chatbot")
@@ -85,7 +64,6 @@ _ADVISED = re.compile(
 _HELPERS = word_set("doctor hospital ambulance nurse medicine help emergency clinic")
 _REFERRING = word_set("he him his she her it they them this")
 """Words that may mean the patient or the illness of the sentence before."""
-_SAD = SORROWS | {"tiredness"}
 _JUDGING = frozenset(("think", "feel", "know"))
 """Verbs of questions such as *what do you think about jazz*."""
 _THIRD = frozenset(("he", "she", "they"))
@@ -173,12 +151,12 @@ def _understand(found: Hearing, phrases: Material, heard: Heard, seen: Analysis,
     found.taken = None if asking or request else taken_from(seen, phrases.living, state.before)
     found.options = options_between(seen.tree)
     found.asked = asked_in(phrases, seen, asking, state, found.moves, request=request)
-    moment, sentence, score = moment_of(phrases, seen, found, asking)
+    moment, sentence, score = moment_of(phrases, seen, found.tags, found.moves, found.asked, asking)
     feeling, sentence = feeling_of(phrases, seen, sentence, state.tone)
     if feeling is not None and asking and feeling.tone != "sad":
         match = seen.feelings[feeling.name]
         feeling = feeling if match.score >= TURNED and match.text not in asking else None
-    if feeling is not None and not _fits(feeling, found.moves):
+    if feeling is not None and not fits_move(feeling, found.moves):
         feeling = None
     roles = roles_of(seen, asking or sentence, state.being, phrases)
     last = state.said[-1] if state.said else ""
@@ -189,7 +167,7 @@ def _understand(found: Hearing, phrases: Material, heard: Heard, seen: Analysis,
     )
     statement = roles.statement
     found.moment = "" if moment is None else moment.name
-    found.meanings = _ranked(phrases, seen, state, found, asking, score, feeling)
+    found.meanings = meanings_of(phrases, seen, state.tone, found.moves, moment, score, feeling, asking)
     found.sad = feeling is not None and feeling.tone == "sad"
     found.near = near_in(phrases, seen, asking, state, feeling, being=roles.being)
     dark = is_dark(seen, found.near) or found.sad
@@ -239,7 +217,7 @@ def _understand(found: Hearing, phrases: Material, heard: Heard, seen: Analysis,
         "verb": verb and seen.question is None,
         "acting": bool(seen.acts.keys() - {"contradiction"}),
         "felt": feeling is not None,
-        "sorry": not _SAD.isdisjoint(seen.feelings),
+        "sorry": not SAD.isdisjoint(seen.feelings),
         "sure": score >= SURE,
         "alike": alike,
         "others": others,
@@ -361,101 +339,6 @@ def _statement_tags(phrases: Material, seen: Analysis, statement: Statement, rol
         "living": is_living(phrases, statement) and "they" in roles.values,
         "past": is_past(statement.verb, seen),
     }
-
-
-def _ranked(
-    phrases: Material, seen: Analysis, state: State, found: Hearing, asking: str, score: float, feeling: Moment | None
-) -> list[Moment]:
-    """Return the feelings, acts and moments that may decide the answer, best first."""
-    ranked: list[tuple[float, Moment]] = []
-    moment = phrases.moments.get(found.moment)
-    light = moment is not None and moment.tone != "sad" and "sad" not in moment.groups
-    if moment is not None and state.tone == "sad" and light and (not asking or moment.tone == "glad"):
-        score = (
-            score if score >= TURNED and moment.tone == "glad" and "rejoice" in found.moves else 0.0
-        )  # no light phrases in a sad conversation
-    if moment is not None and state.tone == "glad" and moment.tone == "sad" and score < CLOUDED:
-        score = 0.0  # "tears of joy"
-    if feeling is not None and feeling.tone == "sad" and light and seen.feelings[feeling.name].score >= TURNED:
-        score = 0.0  # "I must tell you, I am afraid"
-    if moment is not None and score >= SURE:
-        ranked.append((score + FINER, moment))
-    if feeling is not None:
-        ranked.append((seen.feelings[feeling.name].score, feeling))
-    for act in (act for act in seen.acts.values() if act.name in phrases.acts):
-        few, last = len(act.text.split()) <= FEW_WORDS, act.text in seen.sentences[-1:]
-        least = ASKED if act.name in ENDINGS else FEW if few else MEANT
-        whole = len(seen.sentences) == 1 and len(act.text) >= len(seen.sentences[0]) - 1
-        beside = (
-            act.text != asking or act.name in ("greeting", "farewell")
-            if asking
-            else few and not whole and not (last and act.name in ("farewell", "thanks"))
-        )
-        if act.score >= least and not beside and (_fits(phrases.acts[act.name], found.moves) or (whole and few)):
-            ranked.append((act.score, phrases.acts[act.name]))
-    return [one for _, one in sorted(ranked, key=lambda pair: -pair[0])]
-
-
-def _fits(moment: Moment, moves: Sequence[str]) -> bool:
-    """Return whether a moment has phrases for one of the likely moves."""
-    return not moves or not moment.moves or not moment.moves.isdisjoint(moves)
-
-
-def moment_of(phrases: Material, seen: Analysis, heard: Hearing, asking: str = "") -> tuple[Moment | None, str, float]:
-    """Return the moment that a sentence resembles most, with the sentence and the confidence.
-
-    A moment counts if its phrases suit one of the likely moves, or if the user says one of its examples nearly word for
-    word. If the user asks something, only the question counts.
-    """
-    best, sentence, score = None, "", 0.0
-    imagined = any(one.conditional for one in seen.statements)
-    texts = [asking] if asking else list(seen.sentences[:4])
-    for match in (match for matcher in phrases.matchers for match in matcher.match_all(texts)):
-        if match is None or match.score <= score:
-            continue
-        found = phrases.moments[match.name]
-        few = len(match.text.split()) <= FEW_WORDS and len(seen.sentences) > 1  # "sorry" beside another sentence
-        asked = heard.asked
-        better = asked is not None and (asked.own or (heard.tags >= {"sad"} and found.tone != "sad"))
-        alike = asked is None or (not better and asked.kind == kind_of(match.example))
-        fits = match.score >= EXACT or (alike and _fits(found, heard.moves) and not imagined)
-        if fits and not few and (not found.after or found.after in heard.tags) and has_head(phrases, found, seen):
-            best, sentence, score = found, match.text, match.score
-    return best, sentence, score
-
-
-def has_head(phrases: Material, moment: Moment, seen: Analysis) -> bool:
-    """Return whether an utterance has one of the words that a moment needs, as grief needs a word of death."""
-    needed = phrases.heads.get(moment.heads, frozenset())
-    return not needed or any(needed & {word.low, word.lemma.lower()} for word in seen.tree.words)
-
-
-def feeling_of(phrases: Material, seen: Analysis, sentence: str, tone: str) -> tuple[Moment | None, str]:
-    """Return the strongest feeling with its sentence; sad feelings precede all others."""
-    known = [one for one in seen.feelings.values() if one.name in phrases.feelings and one.score >= _least(one, tone)]
-    brief = len(seen.text.split()) <= BRIEFLY  # "the parcel lay in the rain again. Unbelievable." is no surprise
-    known = [one for one in known if brief or one.name != "astonishing"]
-    known = [one for one in known if has_head(phrases, phrases.feelings[one.name], seen)]
-    known = [one for one in known if not re.search(rf'["“][^"”]*{re.escape(one.text.strip(".!?"))}', seen.text)]
-    if may_be_dark(seen.text):  # "that's Portugal gone!" is no good news
-        known = [one for one in known if phrases.feelings[one.name].tone != "glad"]
-    elif tone_of(seen.text) == "funny":  # "I fell asleep on the tram, and now I am at a cemetery"
-        known = [one for one in known if phrases.feelings[one.name].tone != "sad"]
-    but = any(word.low == "but" for word in seen.tree.words)  # "you are sweet, but you don't listen"
-    matches = [one for one in known if one.name in _SAD or not but]
-    if not matches:
-        return None, sentence
-    best = max(matches, key=lambda match: (match.name in _SAD, match.score))
-    return phrases.feelings[best.name], best.text
-
-
-def _least(match: Match, tone: str) -> float:
-    """Return the minimum confidence at which a feeling decides the answer."""
-    few = len(match.text.split()) <= FEW_WORDS
-    if match.name == "astonishing":
-        return AMAZED if few else NEVER  # a longer utterance says what is astonishing
-    least = FELT if match.name in _SAD else TURNED if tone in ("sad", "angry") else GLAD
-    return max(least, FEW) if few else least
 
 
 def _is_broken(seen: Analysis, size: int) -> bool:

@@ -17,9 +17,10 @@ from ravestate.modules.meta.nlp.pipeline import pipeline
 from .following import is_answer
 from .games import Played, Turn
 from .grave import is_crisis
-from .hearing import ASKED, Heard, Hearing, feeling_of, hear, is_living
+from .hearing import Heard, Hearing, hear, is_living
 from .lookup import ALIKE, KNOWN, is_dark, near_in
 from .material import Material, material
+from .meaning import ASKED, feeling_of
 from .moment import Line, Moment
 from .repair import may_repair, repair_in
 from .responses import is_general, network
