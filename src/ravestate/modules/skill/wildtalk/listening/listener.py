@@ -148,7 +148,7 @@ class Listener:
         return bool(near) and near[0].fit >= (PERHAPS if roughly else KNOWN) and not light
 
     def answer(self, heard: Heard, state: State, chance: random.Random) -> Answer:
-        """Return the answer. This takes about 50 ms, mostly for the bank."""
+        """Return the answer. This takes 10 to 50 ms, mostly for the bank."""
         hearing = hear(self._phrases, heard, state)
         own = hearing.asked is not None and "wording" in hearing.tags  # "say that again" starts no other performance
         played = None if own else self._play(heard, state, chance)
