@@ -114,6 +114,20 @@ def test_a_message_is_dropped_after_several_crashes_but_not_after_clean_ends(tmp
     assert left == [["deadly", "innocent"]] * TRIES + [["innocent"]] * 2
 
 
+def test_a_message_that_is_dropped_leaves_no_delivered_answer_in_the_file(tmp_path: Path) -> None:
+    store = opened(tmp_path)
+    entry = store.take(letter("deadly"))
+    assert entry is not None
+    store.commit([answer("a secret word", entry), answer("not delivered", entry)])
+    store.sent(store.next("a"), "id 1")  # type: ignore[arg-type]
+    for _ in range(TRIES):
+        store.hear(entry)
+    assert store.pending() == []
+    assert [each.text for each in store.recorded(entry.n)] == ["not delivered"]
+    store.close()
+    assert b"secret" not in b"".join(file.read_bytes() for file in (tmp_path / "folder").iterdir())
+
+
 def test_an_edit_replaces_a_message_that_is_not_heard_yet(tmp_path: Path) -> None:
     store, message = opened(tmp_path), letter("one")
     entry, edit = store.take(message), store.take(letter("two", id=message.id, kind="edit"))

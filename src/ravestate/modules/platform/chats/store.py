@@ -140,6 +140,8 @@ class Store:
         """Return the messages that are not done, in order. Drop messages that the agent has heard `TRIES` times."""
         with self._transaction():
             self._db.execute("UPDATE inbox SET data = NULL WHERE tries >= ?", (TRIES,))
+            done = "SELECT n FROM inbox WHERE data IS NULL"  # nothing is compared with the answers to these messages
+            self._db.execute(f"DELETE FROM outbox WHERE state = 'sent' AND cause IN ({done})")
             return [
                 Entry(n, _incoming(data, chat))
                 for n, data, chat in self._all("SELECT n, data, chat FROM inbox WHERE data IS NOT NULL ORDER BY n")
