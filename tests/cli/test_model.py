@@ -82,6 +82,14 @@ def test_an_unfinished_download_can_be_removed(place: Path, capsys: Capture) -> 
     assert call(capsys, "model", "remove", "tiny") == (0, f"removed {MODEL.part}\n", "")
 
 
+def test_a_default_that_cannot_be_written_gives_a_message(hub: Hub, place: Path, capsys: Capture) -> None:
+    (place / "default").mkdir(parents=True)
+    code, _, errors = call(capsys, "model", "get")
+    assert code == 1 and "Traceback" not in errors
+    assert f"the default model stays as it was, because {place / 'default'} cannot be written: Is a directory" in errors
+    assert MODEL.installed
+
+
 def test_failures_and_wrong_use_give_messages(hub: Hub, capsys: Capture) -> None:
     hub.script = [404]
     code, _, errors = call(capsys, "model", "get")
