@@ -82,6 +82,14 @@ def test_an_unfinished_download_can_be_removed(place: Path, capsys: Capture) -> 
     assert call(capsys, "model", "remove", "tiny") == (0, f"removed {MODEL.part}\n", "")
 
 
+def test_an_installed_model_that_was_cut_off_is_fetched_again(hub: Hub, place: Path, capsys: Capture) -> None:
+    place.mkdir()
+    (place / "tiny.gguf").write_bytes(CONTENT[:1000])
+    assert "installed" not in call(capsys, "model", "list")[1]
+    assert call(capsys, "model", "get")[0] == 0
+    assert (place / "tiny.gguf").read_bytes() == CONTENT
+
+
 def test_a_default_that_cannot_be_written_gives_a_message(hub: Hub, place: Path, capsys: Capture) -> None:
     (place / "default").mkdir(parents=True)
     code, _, errors = call(capsys, "model", "get")

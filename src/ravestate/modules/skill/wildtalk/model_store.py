@@ -41,8 +41,11 @@ class CatalogueModel:
 
     @property
     def installed(self) -> bool:
-        """Whether the whole file is installed. A file gets its name only after its checksum is verified."""
-        return self.path.is_file()
+        """Whether the whole file is installed. A file gets its name only after its checksum is verified.
+
+        A file that was cut off later, for example by a full disk, does not count, so that it is fetched again.
+        """
+        return self.path.is_file() and self.path.stat().st_size == self.size
 
 
 def folder() -> Path:
