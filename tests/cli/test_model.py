@@ -1,6 +1,8 @@
 """``ravestate model`` lists, fetches and removes models. A stand-in for the model hub serves the downloads."""
 
 import json
+import subprocess
+import sys
 from collections.abc import Iterator
 from pathlib import Path
 from typing import Any
@@ -96,6 +98,21 @@ def test_a_default_that_cannot_be_written_gives_a_message(hub: Hub, place: Path,
     assert code == 1 and "Traceback" not in errors
     assert f"the default model stays as it was, because {place / 'default'} cannot be written: Is a directory" in errors
     assert MODEL.installed
+
+
+def test_a_model_that_another_process_fetches_is_not_removed(place: Path, capsys: Capture) -> None:
+    place.mkdir()
+    MODEL.part.write_bytes(CONTENT[:1000])
+    code = f"import fcntl; part = open({str(MODEL.part)!r}, 'ab'); fcntl.lockf(part, fcntl.LOCK_EX); print(1, flush=True); input()"
+    pipe = subprocess.PIPE
+    with subprocess.Popen([sys.executable, "-c", code], stdin=pipe, stdout=pipe) as other:
+        assert other.stdout is not None and other.stdout.readline()
+        found = call(capsys, "model", "remove", "tiny")
+        other.communicate(b"\n")
+    assert found == (1, "", "ravestate model: another process is fetching tiny: wait until it has finished\n")
+    assert MODEL.part.read_bytes() == CONTENT[:1000]
+    assert call(capsys, "model", "remove", "tiny")[0] == 0
+    assert not MODEL.part.exists()
 
 
 def test_failures_and_wrong_use_give_messages(hub: Hub, capsys: Capture) -> None:
