@@ -1,12 +1,16 @@
-"""The folder for a user's files on each operating system."""
+"""The folder for a user's files on each operating system, and files that are replaced as a whole."""
 
+import errno
+import io
+import os
+import stat
 import sys
 from pathlib import Path
 from typing import Literal
 
 import pytest
 
-from ravestate.folders import user_folder
+from ravestate.folders import replace_file, user_folder
 
 
 @pytest.mark.parametrize(
@@ -35,3 +39,27 @@ def test_the_folder_follows_the_conventions_of_the_operating_system(
     for name, value in variables.items():
         monkeypatch.setenv(name, value)
     assert user_folder(kind) == Path(expected)
+
+
+def test_a_file_is_replaced_as_a_whole_and_has_the_new_rights(tmp_path: Path) -> None:
+    file, left = tmp_path / "file", tmp_path / "file.new"
+    file.write_bytes(b"old")
+    left.write_bytes(b"of a process that died")
+    replace_file(file, b"new", mode=0o600)
+    assert file.read_bytes() == b"new"
+    assert stat.S_IMODE(file.stat().st_mode) == 0o600
+    assert not left.exists()
+
+
+def test_a_file_that_cannot_be_written_stays_as_it_was(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    class Full(io.FileIO):
+        def write(self, _: object) -> int:
+            raise OSError(errno.ENOSPC, "No space left on device")
+
+    file = tmp_path / "file"
+    file.write_bytes(b"old")
+    monkeypatch.setattr(os, "fdopen", Full)
+    with pytest.raises(OSError, match="No space"):
+        replace_file(file, b"new")
+    assert file.read_bytes() == b"old"
+    assert list(tmp_path.iterdir()) == [file]

@@ -142,6 +142,13 @@ def test_one_error_has_all_faults_of_the_settings() -> None:
     assert "setting voice.sped: module 'voice' has no such setting; did you mean 'speed'?" in text
 
 
+def test_a_name_that_is_not_a_text_is_an_unknown_setting() -> None:
+    values: Any = {True: 1, 5: 1, "speed": "fast"}  # YAML reads the name `on` as True
+    found = faults([voice], {"voice": values})
+    assert found[1:] == [f"setting voice.{name}: module 'voice' has no such setting" for name in (True, 5)]
+    assert found[0].startswith("setting voice.speed = 'fast'")
+
+
 def test_faults_in_the_environment_are_reported_together() -> None:
     found = faults([voice], {}, {"RAVESTATE_VOICE_WORDS": "a,b", "RAVESTATE_VOICE_SPEED": "fast"})
     assert "setting voice.words = 'a,b': Input should be a valid tuple" in found

@@ -1,4 +1,4 @@
-"""The operating system's folders for a user's files."""
+"""The operating system's folders for a user's files, and a safe way to replace a file."""
 
 from __future__ import annotations
 
@@ -25,3 +25,25 @@ def user_folder(kind: Literal["data", "state", "cache"]) -> Path:
         default = {"data": ".local/share", "state": ".local/state", "cache": ".cache"}[kind]
         base = Path(given) if Path(given).is_absolute() else Path.home() / default
     return base / "ravestate"
+
+
+def replace_file(path: Path, content: bytes, *, mode: int = 0o666) -> None:
+    """Write a file as a whole. If this fails, for example on a full disk, the file stays as it was.
+
+    Args:
+        path: The file.
+        content: The new content.
+        mode: The rights of the new file, before the user's mask takes some away.
+
+    Raises:
+        OSError: The file cannot be written.
+    """
+    new = path.with_name(f"{path.name}.new")
+    try:
+        new.unlink(missing_ok=True)  # a process that died may have left one, perhaps with other rights
+        with os.fdopen(os.open(new, os.O_WRONLY | os.O_CREAT | os.O_EXCL, mode), "wb") as file:
+            file.write(content)
+        new.replace(path)
+    except OSError:
+        new.unlink(missing_ok=True)
+        raise

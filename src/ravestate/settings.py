@@ -102,8 +102,11 @@ def load_settings(
                 DeclarationError(f"settings for {name!r} must be a mapping of fields to values, not {short(values)}")
             )
             continue
+        named = {
+            str(key): value for key, value in values.items()
+        }  # YAML reads some names, such as `on`, as other values
         try:
-            found[name] = model(**{**_from_environment(name, model, variables), **values})
+            found[name] = model(**{**_from_environment(name, model, variables), **named})
         except pydantic.ValidationError as error:
             faults.extend(_faults(name, model, error))
     if faults:

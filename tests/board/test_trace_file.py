@@ -2,6 +2,7 @@
 
 import dataclasses
 import json
+import resource
 from collections.abc import Callable
 from pathlib import Path
 from typing import Any
@@ -37,6 +38,19 @@ def test_reading_a_trace_file_gives_the_records_and_policy_that_were_written(tmp
     assert (found.title, found.whole) == ("Elske", True)
     assert found.description == describe(policy)
     assert [data_of(record) for record in found.records] == [data_of(record) for record in records]
+
+
+def test_a_trace_that_cannot_be_written_leaves_the_earlier_trace(tmp_path: Path) -> None:
+    records, policy = recorded(tmp_path / "trace.json")
+    soft, hard = resource.getrlimit(resource.RLIMIT_FSIZE)
+    resource.setrlimit(resource.RLIMIT_FSIZE, (1000, hard))  # fails in the middle of the file, like a full disk
+    try:
+        with pytest.raises(OSError, match="File too large"):
+            save_trace(tmp_path / "trace.json", policy, records, title="Later")
+    finally:
+        resource.setrlimit(resource.RLIMIT_FSIZE, (soft, hard))
+    assert open_trace(tmp_path / "trace.json").title == "Elske"
+    assert len(list(tmp_path.iterdir())) == 1
 
 
 def test_a_trace_file_alone_is_enough_to_answer_why_not(tmp_path: Path) -> None:

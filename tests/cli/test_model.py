@@ -1,6 +1,8 @@
 """``ravestate model`` lists, fetches and removes models. A stand-in for the model hub serves the downloads."""
 
 import json
+import subprocess
+import sys
 from collections.abc import Iterator
 from pathlib import Path
 from typing import Any
@@ -80,6 +82,37 @@ def test_an_unfinished_download_can_be_removed(place: Path, capsys: Capture) -> 
     place.mkdir()
     MODEL.part.touch()
     assert call(capsys, "model", "remove", "tiny") == (0, f"removed {MODEL.part}\n", "")
+
+
+def test_an_installed_model_that_was_cut_off_is_fetched_again(hub: Hub, place: Path, capsys: Capture) -> None:
+    place.mkdir()
+    (place / "tiny.gguf").write_bytes(CONTENT[:1000])
+    assert "installed" not in call(capsys, "model", "list")[1]
+    assert call(capsys, "model", "get")[0] == 0
+    assert (place / "tiny.gguf").read_bytes() == CONTENT
+
+
+def test_a_default_that_cannot_be_written_gives_a_message(hub: Hub, place: Path, capsys: Capture) -> None:
+    (place / "default").mkdir(parents=True)
+    code, _, errors = call(capsys, "model", "get")
+    assert code == 1 and "Traceback" not in errors
+    assert f"the default model stays as it was, because {place / 'default'} cannot be written: Is a directory" in errors
+    assert MODEL.installed
+
+
+def test_a_model_that_another_process_fetches_is_not_removed(place: Path, capsys: Capture) -> None:
+    place.mkdir()
+    MODEL.part.write_bytes(CONTENT[:1000])
+    code = f"import fcntl; part = open({str(MODEL.part)!r}, 'ab'); fcntl.lockf(part, fcntl.LOCK_EX); print(1, flush=True); input()"
+    pipe = subprocess.PIPE
+    with subprocess.Popen([sys.executable, "-c", code], stdin=pipe, stdout=pipe) as other:
+        assert other.stdout is not None and other.stdout.readline()
+        found = call(capsys, "model", "remove", "tiny")
+        other.communicate(b"\n")
+    assert found == (1, "", "ravestate model: another process is fetching tiny: wait until it has finished\n")
+    assert MODEL.part.read_bytes() == CONTENT[:1000]
+    assert call(capsys, "model", "remove", "tiny")[0] == 0
+    assert not MODEL.part.exists()
 
 
 def test_failures_and_wrong_use_give_messages(hub: Hub, capsys: Capture) -> None:

@@ -27,6 +27,7 @@ from ravestate.board.rendering import well_formed
 from ravestate.board.wire import VERSION, TraceRecord, checked_record, data_of
 from ravestate.engine.trace import Record
 from ravestate.errors import PlatformError
+from ravestate.folders import replace_file
 from ravestate.policy.policy import Policy
 
 FORMAT = "ravestate-trace"
@@ -95,7 +96,10 @@ class _File(pydantic.BaseModel):
 def save_trace(
     path: Path, policy: Policy, records: Iterable[Record | Gap], *, title: str = "Ravestate", whole: bool = True
 ) -> None:
-    """Write a trace, e.g. the ``trace`` of a context with ``trace=True``, to a file for the board."""
+    """Write a trace, e.g. the ``trace`` of a context with ``trace=True``, to a file for the board.
+
+    If writing fails with an OSError, an earlier trace in this file stays.
+    """
     data = {
         "format": FORMAT,
         "v": VERSION,
@@ -104,7 +108,7 @@ def save_trace(
         "policy": dataclasses.asdict(describe(policy)),
         "records": [data_of(record) for record in records],
     }
-    path.write_text(well_formed(json.dumps(data, ensure_ascii=False)), encoding="utf-8")
+    replace_file(path, well_formed(json.dumps(data, ensure_ascii=False)).encode())
 
 
 def open_trace(path: Path) -> Recording:

@@ -12,6 +12,7 @@ from typing import TYPE_CHECKING, Any
 from ravestate.cli import UsageError
 from ravestate.declare.wording import cut
 from ravestate.errors import PlatformError, RavestateError, nearest
+from ravestate.folders import replace_file
 
 if TYPE_CHECKING:
     from ravestate.modules.meta.ontology import Memory, Node, Settings
@@ -153,14 +154,9 @@ def _export(memory: Memory, options: argparse.Namespace) -> int:
         sys.stdout.write(text)
         return 0
     target = Path(options.to)
-    new = target.with_name(target.name + ".new")
     try:
-        new.unlink(missing_ok=True)  # make a new file: other users may have the right to read an existing one
-        new.touch(mode=0o600)  # the document has personal data
-        new.write_text(text, encoding="utf-8")
-        new.replace(target)
+        replace_file(target, text.encode(), mode=0o600)  # the document has personal data
     except OSError as error:
-        new.unlink(missing_ok=True)
         raise UsageError(f"cannot write {target}: {error.strerror}") from None
     print(f"wrote {target}: {len(document['nodes'])} nodes")
     return 0

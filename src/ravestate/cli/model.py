@@ -102,6 +102,7 @@ def _get(model: CatalogueModel) -> int:
 
 def _remove(model: CatalogueModel) -> int:
     from ravestate.modules.skill.wildtalk import model_store
+    from ravestate.modules.skill.wildtalk.download import alone
 
     files = [file for file in (model.path, model.part) if file.exists()]
     if not files:
@@ -109,8 +110,11 @@ def _remove(model: CatalogueModel) -> int:
         return 1
     was_default = model_store.default() == model
     try:
+        if model.part.exists():
+            with alone(model):
+                pass  # no other process fetches the model
         for file in files:
-            file.unlink()
+            file.unlink(missing_ok=True)
     except OSError as error:
         raise PlatformError(f"{files[0]} cannot be removed: {error.strerror or error}") from error
     print(f"removed {', '.join(map(str, files))}")

@@ -196,6 +196,25 @@ def test_a_file_that_cannot_be_written_delays_an_answer_but_does_not_lose_it(
 
 
 @in_virtual_time
+async def test_an_agent_that_ends_while_the_file_cannot_be_written_answers_after_the_next_start(
+    tmp_path: Path, connections: list[sqlite3.Connection], caplog: pytest.LogCaptureFixture
+) -> None:
+    post = Post()
+    async with room(tmp_path, post, slow) as opened:
+        opened.receive([letter("one")])
+        await past(1.0)
+        connections[-1].execute("PRAGMA query_only=ON")
+    assert post.sent == []
+    assert [record.levelname for record in caplog.records if record.exc_info] == []
+    assert "the next start answers again" in caplog.text
+    async with room(tmp_path, post, slow) as opened:
+        assert await post.said(1) == ["a: one"]
+        await past(10.0)
+        assert opened.store.pending() == []
+    assert len(post.sent) == 1
+
+
+@in_virtual_time
 async def test_an_unprompted_utterance_is_sent_once_the_file_can_be_written_again(
     tmp_path: Path, connections: list[sqlite3.Connection]
 ) -> None:

@@ -114,6 +114,20 @@ def test_a_message_is_dropped_after_several_crashes_but_not_after_clean_ends(tmp
     assert left == [["deadly", "innocent"]] * TRIES + [["innocent"]] * 2
 
 
+def test_a_message_that_is_dropped_leaves_no_delivered_answer_in_the_file(tmp_path: Path) -> None:
+    store = opened(tmp_path)
+    entry = store.take(letter("deadly"))
+    assert entry is not None
+    store.commit([answer("a secret word", entry), answer("not delivered", entry)])
+    store.sent(store.next("a"), "id 1")  # type: ignore[arg-type]
+    for _ in range(TRIES):
+        store.hear(entry)
+    assert store.pending() == []
+    assert [each.text for each in store.recorded(entry.n)] == ["not delivered"]
+    store.close()
+    assert b"secret" not in b"".join(file.read_bytes() for file in (tmp_path / "folder").iterdir())
+
+
 def test_an_edit_replaces_a_message_that_is_not_heard_yet(tmp_path: Path) -> None:
     store, message = opened(tmp_path), letter("one")
     entry, edit = store.take(message), store.take(letter("two", id=message.id, kind="edit"))
@@ -188,7 +202,39 @@ def test_only_one_process_can_open_the_file_and_only_the_user_can_read_it(tmp_pa
     with pytest.raises(PlatformError, match="another agent uses it"):
         opened(tmp_path)
     assert stat.S_IMODE(store.path.stat().st_mode) == 0o600
+
+
+@pytest.mark.parametrize("damage", ["text", "a cut", "pages"])
+def test_a_damaged_file_is_refused_at_once_with_the_remedy_and_stays_as_it_was(tmp_path: Path, damage: str) -> None:
+    store = opened(tmp_path)
+    for n in range(100):
+        store.take(letter(f"{n} {'word ' * 60}"))
     store.close()
-    store.path.write_bytes(b"no database at all, but some text that is long enough" * 100)
-    with pytest.raises(PlatformError, match="cannot be opened"):
-        opened(tmp_path)
+    whole = store.path.read_bytes()
+    broken = {
+        "text": b"no database at all, but some text that is long enough" * 100,
+        "a cut": whole[: len(whole) // 2],
+        "pages": whole[:20_480] + b"\xff" * 20_480 + whole[40_960:],
+    }[damage]
+    store.path.write_bytes(broken)
+    for _ in range(2):  # a refused file does not stay locked
+        with pytest.raises(PlatformError, match=r"cannot be opened: .*: name another file .* or move this one away"):
+            opened(tmp_path)
+    assert store.path.read_bytes() == broken
+
+
+def test_a_database_of_another_program_is_refused_and_not_changed(tmp_path: Path) -> None:
+    path = tmp_path / "other.db"
+    other = sqlite3.connect(path)
+    other.execute("CREATE TABLE notes (name TEXT)")
+    other.close()
+    before = path.read_bytes()
+    with pytest.raises(PlatformError, match="it belongs to another program"):
+        Store(path)
+    assert path.read_bytes() == before
+
+
+def test_a_folder_called_locked_is_not_taken_for_a_file_in_use(tmp_path: Path) -> None:
+    (tmp_path / "locked").write_text("a file where the folder should be")
+    with pytest.raises(PlatformError, match="File exists: name another file"):
+        Store(tmp_path / "locked" / "store.db")

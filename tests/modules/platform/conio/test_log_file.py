@@ -207,6 +207,17 @@ def test_a_file_that_cannot_be_written_leaves_the_log_as_it_is(monkeypatch: pyte
         assert logging.getLogger().handlers == before
 
 
+@pytest.mark.skipif(not Path("/dev/full").exists(), reason="needs a file that is always full")
+def test_a_full_disk_neither_ends_the_chat_nor_appears_in_it(monkeypatch: pytest.MonkeyPatch, tmp_path: Path) -> None:
+    terminal = on_terminal(monkeypatch)
+    file = tmp_path / "log"
+    file.symlink_to("/dev/full")
+    with log_to_file(file):
+        logging.getLogger().warning("inside")
+        assert terminal.text == ""
+    assert terminal.text == f"The log of this chat has 1 warning: {file}\n"
+
+
 def test_the_log_file_is_in_the_state_folder(monkeypatch: pytest.MonkeyPatch, tmp_path: Path) -> None:
     monkeypatch.setattr(sys, "platform", "linux")
     monkeypatch.setenv("XDG_STATE_HOME", str(tmp_path))

@@ -1,5 +1,6 @@
 """Ravestate's own models: the catalogue, the installed files, the default."""
 
+import os
 import re
 from pathlib import Path
 
@@ -41,6 +42,8 @@ def test_a_default_model_counts_only_while_its_file_exists(tmp_path: Path) -> No
     set_default(model.name)
     assert default() is None
     model.path.touch()
+    assert default() is None  # the file was cut off
+    os.truncate(model.path, model.size)
     assert default() is model
     set_default(None)
     set_default(None)

@@ -7,13 +7,14 @@ and no pictures.
 
 from __future__ import annotations
 
+import io
 import re
 import zipfile
 from collections.abc import Iterator, Sequence
 from pathlib import Path
 
 from ravestate.errors import PlatformError
-from ravestate.folders import user_folder
+from ravestate.folders import replace_file, user_folder
 
 from .pose import Pose, checked
 from .recogniser import Recogniser, numpy
@@ -61,12 +62,11 @@ def write(file: Path, poses: Sequence[Pose], name: str = "") -> None:
     np = numpy()
     times = np.array([pose.at - poses[0].at for pose in poses])
     points = np.stack([pose.points for pose in poses]).astype(np.float32)
-    part = file.with_name(f"{file.name}.part")
+    content = io.BytesIO()
+    np.savez_compressed(content, times=times, points=points, name=np.array(name))
     try:
         file.parent.mkdir(parents=True, exist_ok=True)
-        with part.open("wb") as stream:
-            np.savez_compressed(stream, times=times, points=points, name=np.array(name))
-        part.replace(file)
+        replace_file(file, content.getvalue())
     except OSError as error:
         raise PlatformError(f"activity: {file} cannot be written: {error.strerror or error}") from None
 

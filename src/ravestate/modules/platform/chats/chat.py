@@ -144,10 +144,13 @@ class Chat:
             self._following.cancel()
             self._following = None
         heard = [*self._open, *([self._hearing] if self._hearing else [])]
-        if heard and not finished and self._room.closing:
-            self._room.store.unhear(heard)  # an orderly end is not a crash, so do not count it as one
         self._open = heard
-        self._commit(heard if finished else ())
+        try:
+            if heard and not finished and self._room.closing:
+                self._room.store.unhear(heard)  # an orderly end is not a crash, so do not count it as one
+            self._commit(heard if finished else ())
+        except sqlite3.Error as error:  # the file still has the messages as unanswered
+            self._room.log.warning("answers are not stored, the next start answers again: %s", error)
         self._hearing = None
         self._open = []
         self._repeated.clear()

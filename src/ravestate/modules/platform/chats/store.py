@@ -74,7 +74,7 @@ class Store:
         path: The file. The store makes the file and its folder if they are missing. Only the user may read the file.
 
     Raises:
-        PlatformError: The file cannot be used: another process has it open, or it is not a store.
+        PlatformError: The file cannot be used: another process has it open, or it is damaged, or it is not a store.
     """
 
     def __init__(self, path: Path) -> None:
@@ -83,17 +83,35 @@ class Store:
             path.parent.mkdir(parents=True, exist_ok=True)
             os.close(os.open(path, os.O_CREAT | os.O_RDWR, 0o600))
             self._db = sqlite3.connect(path, isolation_level=None, timeout=0.0)
-            self._db.execute("PRAGMA locking_mode=EXCLUSIVE")
-            self._db.execute("PRAGMA journal_mode=WAL")
-            self._db.execute("PRAGMA synchronous=NORMAL")
-            self._db.execute("PRAGMA secure_delete=ON")
-            with self._transaction():
-                for statement in TABLES.split(";"):
-                    self._db.execute(statement)
-                self._purge()
         except (sqlite3.Error, OSError) as error:
-            why = "another agent uses it: end that one first" if "locked" in str(error) else str(error)
-            raise PlatformError(f"the chats' file {path} cannot be opened: {why}") from None
+            raise _not_opened(path, error) from None
+        try:
+            self._prepare()
+        except BaseException as error:
+            self._db.close()
+            if isinstance(error, sqlite3.Error):
+                raise _not_opened(path, error) from None
+            raise
+
+    def _prepare(self) -> None:
+        """Lock the file, check it, and create the missing tables."""
+        self._db.execute("PRAGMA locking_mode=EXCLUSIVE")
+        self._check()
+        self._db.execute("PRAGMA journal_mode=WAL")
+        self._db.execute("PRAGMA synchronous=NORMAL")
+        self._db.execute("PRAGMA secure_delete=ON")
+        with self._transaction():
+            for statement in TABLES.split(";"):
+                self._db.execute(statement)
+            self._purge()
+
+    def _check(self) -> None:
+        """Refuse a damaged file, and the file of another program, before a message is lost in it."""
+        if self._all("PRAGMA quick_check(1)") != [("ok",)]:
+            raise sqlite3.DatabaseError("it is damaged")
+        tables = {name for (name,) in self._all("SELECT name FROM sqlite_master WHERE type = 'table'")}
+        if tables and "outbox" not in tables:
+            raise sqlite3.DatabaseError("it belongs to another program")
 
     def close(self) -> None:
         """Close the file."""
@@ -140,6 +158,8 @@ class Store:
         """Return the messages that are not done, in order. Drop messages that the agent has heard `TRIES` times."""
         with self._transaction():
             self._db.execute("UPDATE inbox SET data = NULL WHERE tries >= ?", (TRIES,))
+            done = "SELECT n FROM inbox WHERE data IS NULL"  # nothing is compared with the answers to these messages
+            self._db.execute(f"DELETE FROM outbox WHERE state = 'sent' AND cause IN ({done})")
             return [
                 Entry(n, _incoming(data, chat))
                 for n, data, chat in self._all("SELECT n, data, chat FROM inbox WHERE data IS NOT NULL ORDER BY n")
@@ -280,6 +300,15 @@ class Store:
     def noted(self, name: str) -> str | None:
         """Return the text under a name; None if there is none."""
         return next((value for (value,) in self._all("SELECT value FROM notes WHERE name = ?", name)), None)
+
+
+def _not_opened(path: Path, error: Exception) -> PlatformError:
+    """Return the message for users about a file that cannot be opened, with the reason and the remedy."""
+    why = error.strerror if isinstance(error, OSError) else str(error)
+    mend = "name another file in the messenger's setting path, or move this one away (its messages are then lost)"
+    if getattr(error, "sqlite_errorname", "").startswith("SQLITE_BUSY"):
+        why, mend = "another agent uses it", "end that one first"
+    return PlatformError(f"the chats' file {path} cannot be opened: {why}: {mend}")
 
 
 def _incoming(data: str, chat: str) -> Incoming:

@@ -25,8 +25,8 @@ def log_to_file(file: Path) -> Generator[None]:
     """Inside the ``with`` block, write the log to a file if the chat and the log would share a terminal.
 
     After the block, the log goes where it went before. If the file got warnings or errors, a line on standard error
-    names the file. If standard output or standard error is redirected, or the file cannot be written, the log is not
-    moved.
+    names the file. If standard output or standard error is redirected, or the file cannot be opened, the log is not
+    moved. While the disk is full, the newest lines of the log may be lost.
     """
     if not all(stream is not None and stream.isatty() for stream in (sys.stdout, sys.stderr)):
         yield
@@ -34,7 +34,7 @@ def log_to_file(file: Path) -> Generator[None]:
     try:
         file.parent.mkdir(mode=0o700, parents=True, exist_ok=True)
         os.close(os.open(file, os.O_WRONLY | os.O_CREAT | os.O_APPEND, 0o600))  # readable only by the user
-        handler = RotatingFileHandler(file, maxBytes=LARGEST, backupCount=1, encoding="utf-8", errors="replace")
+        handler = _LogFile(file, maxBytes=LARGEST, backupCount=1, encoding="utf-8", errors="replace")
     except OSError:
         yield
         return
@@ -56,11 +56,20 @@ def log_to_file(file: Path) -> Generator[None]:
         yield
     finally:
         root.removeHandler(handler)
-        handler.close()
+        with contextlib.suppress(OSError):  # a full disk
+            handler.close()
         for other in replaced:
             root.addHandler(other)
         if warnings:
             print(f"The log of this chat has {warnings} warning{'s'[: warnings > 1]}: {file}", file=stderr)
+
+
+class _LogFile(RotatingFileHandler):
+    """A log file that never complains on the terminal, between the lines of the chat, that it cannot be written."""
+
+    def handleError(self, record: logging.LogRecord) -> None:
+        if not isinstance(sys.exc_info()[1], OSError):
+            super().handleError(record)
 
 
 def _writes_to_terminal(handler: logging.Handler) -> bool:

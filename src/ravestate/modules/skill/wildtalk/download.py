@@ -38,7 +38,7 @@ def download(model: CatalogueModel) -> None:
         raise PlatformError("HF_HUB_OFFLINE forbids downloads: unset it, and repeat the command")
     try:
         model.part.parent.mkdir(parents=True, exist_ok=True)
-        with _alone(model) as part:
+        with alone(model) as part:
             _fetch(model, part)
             _verify(model, part)
         os.replace(model.part, model.path)
@@ -51,8 +51,8 @@ def download(model: CatalogueModel) -> None:
 
 
 @contextlib.contextmanager
-def _alone(model: CatalogueModel) -> Generator[BinaryIO]:
-    """Open the unfinished file, and refuse a second process that fetches the same model. An empty file is removed."""
+def alone(model: CatalogueModel) -> Generator[BinaryIO]:
+    """Open the unfinished file, and refuse a second process that fetches or removes the model. Remove an empty file."""
     with model.part.open("ab") as part:
         try:
             import fcntl

@@ -6,8 +6,8 @@ import functools
 from dataclasses import dataclass
 from pathlib import Path
 
-from ravestate.errors import UsageError, nearest
-from ravestate.folders import user_folder
+from ravestate.errors import PlatformError, UsageError, nearest
+from ravestate.folders import replace_file, user_folder
 from ravestate.yaml_text import load_yaml
 
 RECOMMENDED = "qwen2.5-1.5b"
@@ -41,8 +41,11 @@ class CatalogueModel:
 
     @property
     def installed(self) -> bool:
-        """Whether the whole file is installed. A file gets its name only after its checksum is verified."""
-        return self.path.is_file()
+        """Whether the whole file is installed. A file gets its name only after its checksum is verified.
+
+        A file that was cut off later, for example by a full disk, does not count, so that it is fetched again.
+        """
+        return self.path.is_file() and self.path.stat().st_size == self.size
 
 
 def folder() -> Path:
@@ -77,9 +80,13 @@ def default() -> CatalogueModel | None:
 
 
 def set_default(name: str | None) -> None:
-    """Make a model the default; None removes the default."""
+    """Make a model the default; None removes the default. Raise `PlatformError` if the folder cannot be written."""
     file = folder() / "default"
-    if name is None:
-        file.unlink(missing_ok=True)
-    else:
-        file.write_text(f"{name}\n", encoding="utf-8")
+    try:
+        if name is None:
+            file.unlink(missing_ok=True)
+        else:
+            replace_file(file, f"{name}\n".encode())
+    except OSError as error:
+        why = f"{file} cannot be written: {error.strerror or error}"
+        raise PlatformError(f"the default model stays as it was, because {why}") from error
