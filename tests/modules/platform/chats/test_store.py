@@ -100,6 +100,18 @@ def test_an_edit_changes_an_answer_only_if_its_message_is_the_newest(tmp_path: P
     assert store.answer_to(unanswered) is None  # meanwhile, an edit of m1 was the newest message
 
 
+def test_after_a_reaction_the_last_message_can_still_be_edited(tmp_path: Path) -> None:
+    store = opened(tmp_path)
+    first = store.take(letter("one", id="m1"))
+    assert first is not None
+    store.commit([answer("yes", first)])
+    store.sent(store.next("a"), "a1")  # type: ignore[arg-type]
+    store.take(letter("👍", id="a1", kind="reaction"))
+    edit = store.take(letter("two", id="m1", kind="edit"))
+    assert edit is not None
+    assert store.answer_to(edit) == "a1"
+
+
 def test_a_message_is_dropped_after_several_crashes_but_not_after_clean_ends(tmp_path: Path) -> None:
     store = opened(tmp_path)
     store.take(letter("deadly"))

@@ -469,6 +469,26 @@ async def test_updates_that_are_delivered_twice_are_answered_only_once(bot: Bot,
         assert await settled(bot) == ["7: Hello"]
 
 
+@live
+async def test_setting_the_webhook_is_repeated_after_failures(bot: Bot, tmp_path: Path) -> None:
+    await bot.do("fault", method="setWebhook", kind="502", times=2)
+    await bot.do("fault", method="setWebhook", kind="429", retry_after=0.01)
+    port = free_port()
+    async with running(bot, tmp_path, webhook=f"http://127.0.0.1:{port}/telegram", port=port):
+        await bot.say(7, "one")
+        assert await bot.said(1) == ["7: one"]
+
+
+@live
+async def test_a_webhook_that_telegram_refuses_ends_the_agent_with_advice(bot: Bot, tmp_path: Path) -> None:
+    why = "Bad Request: bad webhook: an HTTPS URL must be provided for webhook"
+    await bot.do("fault", method="setWebhook", kind="400", why=why)
+    port = free_port()
+    async with running(bot, tmp_path, webhook=f"http://127.0.0.1:{port}/telegram", port=port) as task:
+        with pytest.raises(PlatformError, match=r"refuses the webhook.*https url must.*telegramio\.webhook"):
+            await task
+
+
 # ------------------------------------------------------------------------------------ the token, and other agents
 
 

@@ -144,6 +144,14 @@ def test_the_setting_token_refuses_a_short_token() -> None:
         Settings(token="secret")
 
 
+@pytest.mark.parametrize(
+    "token", ["schlüssel-zum-museum", "line feed at the end\n", " space-at-the-start", "tab\tin-the-middle"]
+)
+def test_the_setting_token_refuses_a_token_that_a_header_cannot_carry(token: str) -> None:
+    with pytest.raises(ValueError, match="write only ASCII characters, without control characters"):
+        Settings.model_validate({"token": token})
+
+
 def test_a_token_of_digits_from_the_environment_is_read_as_text() -> None:
     variables = {"RAVESTATE_WEBIO_TOKEN": "123456789012"}
     assert Access(load_settings([webio.module], None, variables)["webio"]).admits("123456789012")

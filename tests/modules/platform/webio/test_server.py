@@ -195,7 +195,7 @@ def test_a_port_in_use_is_reported() -> None:
             rs.run(parrot, webio, settings={"webio": {"port": port}})
 
 
-@pytest.mark.parametrize("host", ["192.0.2.1", "nowhere.invalid"])
+@pytest.mark.parametrize("host", ["192.0.2.1", "nowhere.invalid", "127.0.0..1"])
 def test_an_address_of_another_machine_is_reported(host: str) -> None:
     with pytest.raises(rs.PlatformError, match=host.replace(".", r"\.")):
         rs.run(parrot, webio, settings={"webio": {"host": host, "port": 0, "token": TOKEN}})

@@ -11,11 +11,12 @@ from .messages import Carrier, DeliveryError, Incoming, Outgoing, Person
 from .room import Room
 from .rules import connect
 from .secrecy import secret
-from .settings import ChatSettings
+from .settings import Address, ChatSettings
 from .store import Store
 
 __all__ = [
     "COMMANDS",
+    "Address",
     "Attempts",
     "Carrier",
     "Chat",

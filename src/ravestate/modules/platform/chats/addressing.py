@@ -59,7 +59,8 @@ def without_mention(text: str, mention: str) -> str:
         >>> without_mention("@robin_bot, how are you?", "@robin_bot")
         'how are you?'
     """
-    return re.sub(rf"\s*(?<!\w){re.escape(mention)}(?!\w)[,:]?", "", text, flags=re.IGNORECASE).strip()
+    # Without the first lookbehind, the time would grow with the square of the number of spaces in the text.
+    return re.sub(rf"(?<!\s)\s*(?<!\w){re.escape(mention)}(?!\w)[,:]?", "", text, flags=re.IGNORECASE).strip()
 
 
 def is_emoji(text: str) -> bool:

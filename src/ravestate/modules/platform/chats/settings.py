@@ -3,10 +3,25 @@
 from __future__ import annotations
 
 from pathlib import Path
+from typing import Annotated
 
 import pydantic
 
 import ravestate as rs
+
+_URL = pydantic.TypeAdapter(pydantic.HttpUrl)
+
+
+def _address(text: str) -> str:
+    try:
+        _URL.validate_python(text)
+    except pydantic.ValidationError:
+        raise ValueError("write a whole address, e.g. https://museum.example") from None
+    return text
+
+
+Address = Annotated[str, pydantic.AfterValidator(_address)]
+"""The address of a server, with ``http://`` or ``https://``. Every request to another text would fail."""
 
 
 class ChatSettings(rs.Settings):

@@ -148,9 +148,10 @@ class Store:
         with self._transaction():
             self._purge()
             data = json.dumps(asdict(message))
+            id = None if message.kind == "reaction" else message.id  # a reaction has the id of another message
             cursor = self._db.execute(
                 "INSERT OR IGNORE INTO inbox (key, chat, id, at, data) VALUES (?, ?, ?, ?, ?)",
-                (message.key, message.chat, message.id, time.time(), data),
+                (message.key, message.chat, id, time.time(), data),
             )
             return Entry(cursor.lastrowid or 0, message) if cursor.rowcount else None
 
@@ -190,7 +191,7 @@ class Store:
         If the edited message was not the last message of its chat, return None.
         """
         chat, id = edit.message.chat, edit.message.id
-        query = "SELECT id, answer FROM inbox WHERE chat = ? AND n < ? ORDER BY n DESC LIMIT 20"
+        query = "SELECT id, answer FROM inbox WHERE chat = ? AND n < ? AND id IS NOT NULL ORDER BY n DESC LIMIT 20"
         rows = self._all(query, chat, edit.n)
         if not rows or rows[0][0] != id:
             return None

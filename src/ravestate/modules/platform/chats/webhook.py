@@ -68,10 +68,12 @@ async def listen(
             return Response(status_code=503)
         return Response()
 
+    host, port = address[0].strip("[]"), address[1]
     try:
-        listener = socket.create_server(address)
+        family = socket.AF_INET6 if ":" in host else socket.AF_INET
+        listener = socket.create_server((host, port), family=family)
     except OSError as error:
-        raise PlatformError(f"the webhook cannot listen on {address[0]}, port {address[1]}: {error.strerror}") from None
+        raise PlatformError(f"the webhook cannot listen on {host}, port {port}: {error.strerror}") from None
     app = Starlette(routes=[Route(urlsplit(url).path or "/", post, methods=["POST"])])
     server = _Server(uvicorn.Config(app, log_config=None, access_log=False, server_header=False, lifespan="off"))
     serving = asyncio.create_task(server.serve(sockets=[listener]))

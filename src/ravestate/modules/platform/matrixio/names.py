@@ -6,13 +6,13 @@ import pydantic
 
 import ravestate as rs
 from ravestate.modules import interloc, rawio
-from ravestate.modules.platform.chats import Chat, ChatSettings, Command
+from ravestate.modules.platform.chats import Address, Chat, ChatSettings, Command
 
 
 class Settings(ChatSettings):
     """The settings of matrixio: the account, and the people whom the agent answers."""
 
-    homeserver: str = "https://matrix.org"
+    homeserver: Address = "https://matrix.org"
     """The address of the account's homeserver."""
     user: str = ""
     """The account's id, such as ``@robin:museum.example``; not needed with a token."""

@@ -11,7 +11,7 @@ from collections.abc import Mapping, Sequence
 from typing import TYPE_CHECKING, Any
 
 from telegram import Bot, Update, User
-from telegram.error import Conflict, InvalidToken, TelegramError
+from telegram.error import BadRequest, Conflict, InvalidToken, TelegramError
 
 from ravestate.errors import PlatformError
 from ravestate.modules.platform.chats import COMMANDS, Attempts, Incoming, Room
@@ -32,6 +32,7 @@ ANSWER = 20.0  # the maximum number of seconds to wait for the answer to any oth
 CONFLICTS = 4  # after this many conflicts in a row, the bot gives up, because another program polls the same bot
 SETTLED = 60.0  # a bot that has run this many seconds never gives up: the program that came later should
 CONFLICT_WAIT = 2.0  # the first wait after a conflict (seconds); after a crash, the server still holds the old request
+REVOKED = "telegramio: the token is no longer valid: @BotFather has the new one"
 SECRET = "x-telegram-bot-api-secret-token"
 
 log = logging.getLogger("ravestate.telegramio")
@@ -86,8 +87,19 @@ class Inlet:
         address = (self._settings.host, self._settings.port)
 
         async def announce() -> None:
-            await self._bot.set_webhook(url, secret_token=secret, allowed_updates=KINDS)
-            self._carrier.current.set()
+            attempts = Attempts(log, "the webhook is not set")
+            while not self._carrier.current.is_set():
+                try:
+                    await self._bot.set_webhook(url, secret_token=secret, allowed_updates=KINDS)
+                    self._carrier.current.set()
+                except BadRequest as error:
+                    raise PlatformError(
+                        f"telegramio: Telegram refuses the webhook {url}: {error.message} (setting telegramio.webhook)"
+                    ) from None
+                except InvalidToken:
+                    raise PlatformError(REVOKED) from None
+                except TelegramError as error:
+                    await attempts.fail(error, wait_of(error))
 
         await listen(url, address, SECRET, secret, lambda update: self.take([update]), announce)
 
@@ -112,7 +124,7 @@ class Inlet:
                 conflicts = 0
                 attempts.succeed()
             except InvalidToken:
-                raise PlatformError("telegramio: the token is no longer valid: @BotFather has the new one") from None
+                raise PlatformError(REVOKED) from None
             except Conflict as error:
                 conflicts += 1
                 if conflicts >= CONFLICTS and now() < settled:

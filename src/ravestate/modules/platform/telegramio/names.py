@@ -6,7 +6,7 @@ import pydantic
 
 import ravestate as rs
 from ravestate.modules import interloc, rawio
-from ravestate.modules.platform.chats import Chat, ChatSettings, Command
+from ravestate.modules.platform.chats import Address, Chat, ChatSettings, Command
 
 
 class Settings(ChatSettings):
@@ -14,9 +14,9 @@ class Settings(ChatSettings):
 
     token: pydantic.SecretStr | None = None
     """The bot's token from @BotFather. Set it as ``RAVESTATE_TELEGRAMIO_TOKEN``."""
-    base_url: str = "https://api.telegram.org/bot"
+    base_url: Address = "https://api.telegram.org/bot"
     """The address of the Bot API server, up to the token."""
-    webhook: str | None = None
+    webhook: Address | None = None
     """The public address, with ``https://``, to which Telegram delivers messages. If None, the bot asks for them."""
     host: str = "127.0.0.1"
     """The address to listen on for the webhook."""

@@ -63,8 +63,8 @@ class Settings(rs.Settings):
         secret = token.get_secret_value()
         if len(secret) < 12:
             raise ValueError("write at least 12 characters, such as secrets.token_urlsafe() makes")
-        if not secret.isprintable():
-            raise ValueError("write no control characters, such as a line feed")
+        if not (secret.isascii() and secret.isprintable()) or secret != secret.strip():  # a header must carry it
+            raise ValueError("write only ASCII characters, without control characters and without spaces at the ends")
         return token
 
 

@@ -195,8 +195,9 @@ def _listen(host: str, port: int) -> socket.socket:
         family, kind, protocol, _, address = socket.getaddrinfo(
             host.strip("[]"), port, type=socket.SOCK_STREAM, flags=socket.AI_PASSIVE
         )[0]
-    except OSError as error:
-        raise PlatformError(f"webio: host {host!r} is not an address of this machine: {error.strerror}") from None
+    except (OSError, UnicodeError) as error:  # a name such as "127.0.0..1" cannot even be encoded
+        why = error.strerror if isinstance(error, OSError) else "it is not a name"
+        raise PlatformError(f"webio: host {host!r} is not an address of this machine: {why}") from None
     listener = socket.socket(family, kind, protocol)
     try:
         listener.setsockopt(socket.SOL_SOCKET, socket.SO_SNDBUF, UNREAD)  # accepted sockets inherit it
