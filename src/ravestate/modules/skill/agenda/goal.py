@@ -16,6 +16,7 @@ from ravestate.modules import rawio, verbaliser
 from ravestate.modules.meta.verbaliser.intents import Intent
 
 from .names import OPEN, GoalState, Status, goals, opportunity
+from .wish import whole_words
 
 Words = str | Iterable[str] | Callable[[rs.RuleContext], str | Awaitable[str]]
 
@@ -204,7 +205,7 @@ def _expression(goal: str, what: str, event: Condition | str | None) -> re.Patte
         hint = f": write {what}={event}.changed" if isinstance(event, rs.Slot) else ""
         raise rs.DeclarationError(f"goal {goal}: {what}={event!r} is neither a condition nor a text{hint}")
     try:
-        return re.compile(rf"(?<!\w)(?:{event})(?!\w)", re.IGNORECASE)
+        return whole_words(event)
     except re.error as error:
         raise rs.DeclarationError(
             f"goal {goal}: {what}={event!r} is not a regular expression ({error}): write for example {what}='yes|sure'"
@@ -224,7 +225,9 @@ def _check(goal: str, say: object, intent: object, priority: object, cooldown: o
             )
     for what, number in (("priority", priority), ("cooldown", cooldown)):
         if isinstance(number, bool) or not isinstance(number, (int, float)) or not 0 < number < math.inf:
-            raise rs.DeclarationError(f"goal {goal}: {what}={number!r} must be above 0: write {what}=1.0")
+            raise rs.DeclarationError(
+                f"goal {goal}: {what}={number!r} must be a finite number above 0: write {what}=1.0"
+            )
     if isinstance(tries, bool) or not isinstance(tries, int) or tries < 1:
         raise rs.DeclarationError(f"goal {goal}: tries={tries!r} must be a whole number of at least 1")
 
