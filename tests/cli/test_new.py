@@ -89,7 +89,7 @@ def test_an_invalid_name_is_refused(name: str, folder: Path, capsys: Capture) ->
     assert list(folder.iterdir()) == []
 
 
-@pytest.mark.parametrize("name", ["json", "test", "tests", "ravestate", "core", "idle", "rawio", "Asyncio"])
+@pytest.mark.parametrize("name", ["json", "test", "tests", "ravestate", "core", "idle", "rawio", "Asyncio", "yaml"])
 def test_names_of_other_modules_are_refused(name: str, folder: Path, capsys: Capture) -> None:
     code, out, errors = call(capsys, "new", name)
     assert (code, out) == (2, "")

@@ -12,6 +12,7 @@ from importlib.resources import files
 from pathlib import Path
 
 from ravestate.errors import UsageError
+from ravestate.loading.modules import LIBRARIES
 from ravestate.modules import BUILT_IN
 
 FILES = {
@@ -36,7 +37,7 @@ def run(options: argparse.Namespace) -> int:
         raise UsageError(f"{name!r} is not a name for a project: use letters, digits, '-' and '_', e.g. my-agent")
     if keyword.iskeyword(package):
         raise UsageError(f"{name!r} is a Python keyword: choose another name, e.g. my-{name}")
-    if package in sys.stdlib_module_names or package in ("core", "ravestate", "test", "tests", *BUILT_IN):
+    if package in LIBRARIES or package in ("core", "pytest", "test", "tests", *BUILT_IN):
         raise UsageError(f"a module named {package!r} exists already: choose another name, e.g. my-{name}")
     if folder.exists() and (not folder.is_dir() or any(folder.iterdir())):
         raise UsageError(f"{folder} exists already, and is not empty")
