@@ -10,6 +10,7 @@ import sys
 from collections.abc import Iterable, Iterator, Mapping, Sequence
 from typing import TYPE_CHECKING, Any
 
+from ravestate.cli import use_utf8
 from ravestate.errors import UsageError
 from ravestate.language.bundled import ModelMissing
 
@@ -63,6 +64,8 @@ def run(options: argparse.Namespace) -> int:
     from ravestate.modules.meta.nlp.pipeline import pipeline
     from ravestate.modules.meta.nlp.reading import model_reader
 
+    if options.json:
+        use_utf8()
     designed = _designed(options)
     for matcher in (*map(bundled_matcher, MATCHERS), *([designed] if designed else [])):
         try:
