@@ -1,7 +1,10 @@
 """The package runs as a command: ``python -m ravestate``."""
 
+import os
+import shlex
 import subprocess
 import sys
+from pathlib import Path
 
 import pytest
 
@@ -12,6 +15,41 @@ from ravestate import compiled
 def test_python_m_ravestate_runs_the_command() -> None:
     run = subprocess.run([sys.executable, "-m", "ravestate", "--version"], capture_output=True, text=True, check=False)
     assert (run.returncode, run.stdout.strip()) == (0, f"ravestate {rs.__version__} ({compiled.build()})")
+
+
+@pytest.mark.parametrize(
+    ("command", "closed", "code", "says"),
+    [
+        ("graph rawio", ">&-", 0, ""),
+        ("nlp --json", "<&-", 0, ""),
+        ("memory --path FILE load -", "<&-", 2, "- is not JSON"),
+    ],
+)
+def test_a_closed_stream_is_empty(command: str, closed: str, code: int, says: str, tmp_path: Path) -> None:
+    shell = f"{shlex.quote(sys.executable)} -m ravestate {command} {closed}".replace("FILE", str(tmp_path / "m.lbug"))
+    run = subprocess.run(shell, shell=True, stderr=subprocess.PIPE, text=True, check=False)
+    assert run.returncode == code and says in run.stderr and "Traceback" not in run.stderr
+
+
+def test_data_for_programs_is_utf_8_in_every_locale(tmp_path: Path) -> None:
+    (tmp_path / "door.py").write_text(
+        "import ravestate as rs\nmodule = rs.Module('door')\nrung = module.signal('rung', input=True)\n"
+        "@module.rule(when=rung, weight=2)\ndef opens(ctx): pass\n",
+        encoding="utf-8",
+    )
+    run = subprocess.run(
+        [sys.executable, "-m", "ravestate", "graph", "./door.py", "--format", "mermaid"],
+        cwd=tmp_path, capture_output=True, check=False, env={**os.environ, "PYTHONIOENCODING": "ascii"},
+    )  # fmt: skip
+    assert run.returncode == 0 and "×2" in run.stdout.decode("utf-8")
+
+
+def test_text_for_people_has_question_marks_for_what_a_terminal_cannot_show() -> None:
+    run = subprocess.run(
+        [sys.executable, "-m", "ravestate", "nlp", "A café."],
+        capture_output=True, check=False, env={**os.environ, "PYTHONIOENCODING": "ascii"},
+    )  # fmt: skip
+    assert run.returncode == 0 and b"normal    A caf?." in run.stdout
 
 
 INTERRUPTED = """

@@ -81,7 +81,7 @@ def test_a_new_nested_folder_and_an_existing_empty_folder_are_accepted(folder: P
     assert (folder / "some" / "where" / "Robot7" / "robot7.py").is_file()
 
 
-@pytest.mark.parametrize("name", ["", ".", "..", "two words", "1st", "-x-y", "ä", "a/b c", "a.b"])
+@pytest.mark.parametrize("name", ["", ".", "..", "two words", "1st", "-x-y", "ä", "a/b c", "a.b", "a-", "a_"])
 def test_an_invalid_name_is_refused(name: str, folder: Path, capsys: Capture) -> None:
     code, out, errors = call(capsys, "new", "--", name)
     assert (code, out) == (2, "")
@@ -89,7 +89,7 @@ def test_an_invalid_name_is_refused(name: str, folder: Path, capsys: Capture) ->
     assert list(folder.iterdir()) == []
 
 
-@pytest.mark.parametrize("name", ["json", "test", "tests", "ravestate", "core", "idle", "rawio", "Asyncio"])
+@pytest.mark.parametrize("name", ["json", "test", "tests", "ravestate", "core", "idle", "rawio", "Asyncio", "yaml"])
 def test_names_of_other_modules_are_refused(name: str, folder: Path, capsys: Capture) -> None:
     code, out, errors = call(capsys, "new", name)
     assert (code, out) == (2, "")
@@ -111,6 +111,8 @@ def test_a_folder_that_cannot_be_written_gives_a_message(folder: Path, capsys: C
     (folder / "file").write_text("", encoding="utf-8")
     code, _, errors = call(capsys, "new", "file/agent")
     assert code == 2 and errors.startswith("ravestate new: cannot write file/agent/README.md: ")
+    code, _, errors = call(capsys, "new", "x" * 300)
+    assert code == 2 and errors.startswith("ravestate new: cannot write xxx") and errors.endswith("too long\n")
 
 
 @pytest.mark.parametrize("name", ["class", "import"])

@@ -166,11 +166,29 @@ def test_generators_are_refused(demo: rs.Module) -> None:
         assert re.match(rf"rule demo:{function.__name__} \({HERE}:\d+\)", message)
 
 
-def test_a_function_without_an_argument_is_refused(demo: rs.Module) -> None:
+def test_a_function_that_does_not_take_exactly_the_context_is_refused(demo: rs.Module) -> None:
+    go = demo.signal("go")
+
     def forgets() -> None:
         pass
 
-    refused("takes no argument: write def forgets(ctx)", lambda: demo.rule(when=demo.signal("go"))(forgets))
+    def wants_more(ctx: rs.RuleContext, text: str) -> None:
+        pass
+
+    def wants_a_keyword(ctx: rs.RuleContext, *, text: str) -> None:
+        pass
+
+    for function in (forgets, wants_more, wants_a_keyword):
+        refused(
+            f"gets one argument, the context: write def {function.__name__}(ctx)",
+            lambda function=function: demo.rule(when=go)(function),
+        )
+
+    class Door:
+        def opens(self, ctx: rs.RuleContext, wide: bool = False) -> None:
+            pass
+
+    assert demo.rule(when=go)(Door().opens).name == "demo:opens"
 
     def takes_any(*arguments: object) -> None:
         pass
@@ -229,6 +247,7 @@ def test_the_arguments_reads_and_writes_take_slots_and_emits_takes_signals(demo:
             lambda what=what: demo.rule(when=go, **{what: go})(do),
         )
         refused(f"{what}='mood' is not a slot", lambda what=what: demo.rule(when=go, **{what: ["mood"]})(do))
+        refused(f"{what}='mood' is not a slot", lambda what=what: demo.rule(when=go, **{what: "mood"})(do))
         refused(f"{what}=None is not a slot", lambda what=what: demo.rule(when=go, **{what: None})(do))
     refused(
         "emits=demo:mood is not a signal: a rule that writes a slot raises its signals; use writes=mood",

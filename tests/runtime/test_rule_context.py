@@ -340,7 +340,7 @@ def test_an_emitted_signal_carries_its_payload(scene: Scene) -> None:
             lambda s: s.mood,
             "emitted m:mood, which is a slot: write ctx[mood] = value, or emit a signal: ctx.emit(signal)",
         ),
-        (lambda s: "out", "emitted 'out' without declaring it"),
+        (lambda s: "out", "emitted 'out', which is not a signal: write ctx.emit(signal)"),
     ],
 )
 def test_undeclared_emissions_are_refused(scene: Scene, what: Callable[[Scene], Any], text: str) -> None:

@@ -105,6 +105,7 @@ def script() -> int:
 
     from ravestate.runtime import workers
 
+    _open_streams()
     code = main()
     workers.LAST_GRACE = LAST_GRACE
     atexit._run_exitfuncs()  # pyright: ignore[reportPrivateUsage]  # this runs the handlers that wait for threads
@@ -114,6 +115,27 @@ def script() -> int:
                 stream.flush()
         os._exit(code)
     return code
+
+
+def _open_streams() -> None:
+    """Make the standard streams usable: a closed stream is empty, and output shows ``?`` for what it cannot encode."""
+    import os
+
+    for name, mode in (("stdin", "r"), ("stdout", "w"), ("stderr", "w")):
+        if getattr(sys, name) is None:
+            setattr(sys, name, open(os.devnull, mode, encoding="utf-8"))  # noqa: SIM115  # open until the process ends
+    _reconfigure(sys.stdout, errors="replace")
+
+
+def use_utf8() -> None:
+    """Read and write the standard streams as UTF-8, whatever the locale: a program reads what this command writes."""
+    _reconfigure(sys.stdin, encoding="utf-8", errors="strict")
+    _reconfigure(sys.stdout, encoding="utf-8", errors="replace")
+
+
+def _reconfigure(stream: Any, **options: str) -> None:
+    if hasattr(stream, "reconfigure"):  # a stream in memory has no encoding
+        stream.reconfigure(**options)
 
 
 class CommandParser(argparse.ArgumentParser):

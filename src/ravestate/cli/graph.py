@@ -6,7 +6,7 @@ import argparse
 import sys
 from pathlib import Path
 
-from ravestate.cli import agent, complete
+from ravestate.cli import agent, complete, use_utf8
 from ravestate.errors import UsageError, nearest
 
 SUFFIXES = {".svg": "svg", ".dot": "dot", ".gv": "dot", ".mmd": "mermaid", ".mermaid": "mermaid"}
@@ -80,6 +80,7 @@ def run(options: argparse.Namespace) -> int:
             )
     text = FORMATS[format](diagram)
     if options.output is None:
+        use_utf8()
         print(text)
         return 0
     try:

@@ -9,7 +9,7 @@ from collections import Counter
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
-from ravestate.cli import UsageError
+from ravestate.cli import UsageError, use_utf8
 from ravestate.declare.wording import cut
 from ravestate.errors import PlatformError, RavestateError, nearest
 from ravestate.folders import replace_file
@@ -151,6 +151,7 @@ def _export(memory: Memory, options: argparse.Namespace) -> int:
     document = memory.export().result()
     text = json.dumps(document, ensure_ascii=False, indent=2) + "\n"
     if options.to == "-":
+        use_utf8()
         sys.stdout.write(text)
         return 0
     target = Path(options.to)
@@ -163,6 +164,7 @@ def _export(memory: Memory, options: argparse.Namespace) -> int:
 
 
 def _load(memory: Memory, options: argparse.Namespace) -> int:
+    use_utf8()
     try:
         text = sys.stdin.read() if options.document == "-" else Path(options.document).read_text(encoding="utf-8")
         document: Any = json.loads(text)

@@ -12,6 +12,7 @@ from importlib.resources import files
 from pathlib import Path
 
 from ravestate.errors import UsageError
+from ravestate.loading.modules import LIBRARIES
 from ravestate.modules import BUILT_IN
 
 FILES = {
@@ -32,24 +33,28 @@ def run(options: argparse.Namespace) -> int:
     folder = Path(options.name)
     name = folder.name
     package = name.replace("-", "_").lower()
-    if not re.fullmatch(r"[A-Za-z][A-Za-z0-9_-]*", name):
-        raise UsageError(f"{name!r} is not a name for a project: use letters, digits, '-' and '_', e.g. my-agent")
+    if not re.fullmatch(r"[A-Za-z]([A-Za-z0-9_-]*[A-Za-z0-9])?", name):  # pip accepts no other ending
+        raise UsageError(
+            f"{name!r} is not a name for a project: use letters, digits, '-' and '_', e.g. my-agent; begin with a letter, "
+            "and end with a letter or digit"
+        )
     if keyword.iskeyword(package):
         raise UsageError(f"{name!r} is a Python keyword: choose another name, e.g. my-{name}")
-    if package in sys.stdlib_module_names or package in ("core", "ravestate", "test", "tests", *BUILT_IN):
+    if package in LIBRARIES or package in ("core", "pytest", "test", "tests", *BUILT_IN):
         raise UsageError(f"a module named {package!r} exists already: choose another name, e.g. my-{name}")
-    if folder.exists() and (not folder.is_dir() or any(folder.iterdir())):
-        raise UsageError(f"{folder} exists already, and is not empty")
     templates = files("ravestate.cli") / "template"
-    for template, target in FILES.items():
-        text = (templates / f"{template}.txt").read_text(encoding="utf-8")
-        path = folder / target.format(package=package)
-        try:
+    path = folder
+    try:
+        if folder.exists() and (not folder.is_dir() or any(folder.iterdir())):
+            raise UsageError(f"{folder} exists already, and is not empty")
+        for template, target in FILES.items():
+            text = (templates / f"{template}.txt").read_text(encoding="utf-8")
+            path = folder / target.format(package=package)
             path.parent.mkdir(parents=True, exist_ok=True)
             path.write_text(text.replace("__name__", name).replace("__package__", package), encoding="utf-8")
-        except OSError as error:
-            raise UsageError(f"cannot write {path}: {error.strerror}") from None
-        print(f"wrote {path}")
+            print(f"wrote {path}")
+    except OSError as error:
+        raise UsageError(f"cannot write {path}: {error.strerror}") from None
     print(f"\nNow:\n  cd {shlex.quote(str(folder))}\n  {_named('ravestate')} run agent.yaml")
     print(f"  {_named('python')} -m pip install pytest\n  {_named('python')} -m pytest")
     return 0

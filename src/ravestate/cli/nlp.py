@@ -10,6 +10,7 @@ import sys
 from collections.abc import Iterable, Iterator, Mapping, Sequence
 from typing import TYPE_CHECKING, Any
 
+from ravestate.cli import use_utf8
 from ravestate.errors import UsageError
 from ravestate.language.bundled import ModelMissing
 
@@ -56,20 +57,21 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
 
 
 def run(options: argparse.Namespace) -> int:
-    from ravestate.language.matcher import bundled_matcher
     from ravestate.modules._text import printable
     from ravestate.modules.meta.nlp import Settings
-    from ravestate.modules.meta.nlp.analysis import MATCHERS, analyse
+    from ravestate.modules.meta.nlp.analysis import analyse, load_models
     from ravestate.modules.meta.nlp.pipeline import pipeline
     from ravestate.modules.meta.nlp.reading import model_reader
 
+    if options.json:
+        use_utf8()
     designed = _designed(options)
-    for matcher in (*map(bundled_matcher, MATCHERS), *([designed] if designed else [])):
-        try:
-            matcher.load()
-        except ModelMissing as error:
-            print(f"ravestate nlp: the analysis has only exact matches: {error}", file=sys.stderr)
-            break
+    try:
+        load_models()
+        if designed:
+            designed.load()
+    except ModelMissing as error:
+        print(f"ravestate nlp: the analysis has only exact matches: {error}", file=sys.stderr)
     names: Sequence[str] = options.agent_names or Settings().agent_names
     texts: Iterable[str] = [" ".join(options.text)] if options.text else _lines()
     reader = (

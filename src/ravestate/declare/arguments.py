@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import contextlib
 import inspect
 from collections.abc import Callable
 from functools import wraps
@@ -81,9 +82,12 @@ def check_function(function: object, title: str, *, named: bool, where: str, dec
         raise DeclarationError(
             f"{where} is a generator, but a rule returns only once: use ctx[slot] = value instead of yield"
         )
-    code = getattr(function, "__code__", None)
-    if code is not None and code.co_argcount == 0 and not code.co_flags & inspect.CO_VARARGS:
-        raise DeclarationError(f"{where} takes no argument: write def {title}(ctx)")
+    try:
+        inspect.signature(function).bind(None)
+    except TypeError:
+        raise DeclarationError(f"{where} gets one argument, the context: write def {title}(ctx)") from None
+    except ValueError:  # a function without a signature, for instance of C
+        pass
 
 
 def condition(value: object, what: str, where: str, home: str) -> Condition:
@@ -111,10 +115,10 @@ def several(values: Any, kind: type[T], what: str, where: str, home: str) -> tup
     """Return one or more slots or signals as a tuple without duplicates. For the other arguments, see `condition`."""
     if isinstance(values, kind):
         return (values,)
-    try:
-        found = tuple(values)
-    except TypeError:
-        found = (values,)
+    found: tuple[Any, ...] = (values,)
+    if not isinstance(values, str):
+        with contextlib.suppress(TypeError):
+            found = tuple(values)
     for value in found:
         if not isinstance(value, kind):
             hint = ""

@@ -15,6 +15,9 @@ from ravestate.declare.module import Module, as_module
 from ravestate.errors import DeclarationError, RavestateError, UsageError, nearest
 from ravestate.modules import BUILT_IN
 
+LIBRARIES = sys.stdlib_module_names | {"ravestate", "pydantic", "yaml"}
+"""Python modules that every agent may import. A user's file of the same name would take their place."""
+
 
 def load_module(name: str, folder: Path = Path()) -> Module:
     """Return a module by its built-in name, entry point, dotted path or file; paths are relative to `folder`.
@@ -59,6 +62,8 @@ def _from_path(name: str, known: list[str]) -> Module:
 def _from_file(name: str, path: Path) -> Module:
     if not path.is_file():
         raise UsageError(f"there is no file {name}")
+    if path.stem in LIBRARIES:
+        raise UsageError(f"{name} would replace the Python module {path.stem!r}: rename the file, e.g. my_{path.name}")
     known = sys.modules.get(path.stem)
     if known is not None and getattr(known, "__file__", None) == str(path):
         return _as_module(name, known)  # a test that has imported the file needs the same slot objects

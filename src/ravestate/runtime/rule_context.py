@@ -220,9 +220,10 @@ class RuleContext:
                 f"rule {self.rule.name} ({self.rule.origin}) emitted {name}, which is a slot: write "
                 f"ctx[{self._spelt(value)}] = value, or emit a signal: ctx.emit(signal)"
             )
-        if what != "emits" and not isinstance(value, Slot):
+        kind, right = ("signal", "ctx.emit(signal)") if what == "emits" else ("slot", "ctx[slot]")
+        if not isinstance(value, Signal if what == "emits" else Slot):
             raise UndeclaredError(
-                f"rule {self.rule.name} ({self.rule.origin}) {did} {name}, which is not a slot: write ctx[slot]"
+                f"rule {self.rule.name} ({self.rule.origin}) {did} {name}, which is not a {kind}: write {right}"
             )
         own = getattr(self.rule, what)
         line = self._spelt(value)

@@ -133,6 +133,10 @@ def test_the_errors_about_a_designers_mistakes_say_what_to_change(tmp_path: Path
     module = rs.Module("shop", requires=[nlp])
     with pytest.raises(rs.DeclarationError, match=r"there are no examples: write two or more sentences"):
         nlp.intent(module, "price", examples=[])
+    with pytest.raises(
+        rs.DeclarationError, match=r"'none' stands for sentences without an intent: choose another name"
+    ):
+        nlp.intent(module, "none", examples=["how much is it", "what does it cost"])
     with pytest.raises(rs.DeclarationError, match=r"none.yaml' cannot be read .* relative to the Python file"):
         nlp.intent(module, "price", examples="no/none.yaml")
     with pytest.raises(rs.DeclarationError, match=r"'price' needs a list of sentences"):

@@ -297,6 +297,24 @@ def test_a_function_can_make_the_text_from_slots() -> None:
         assert sim.said == ["Ada, shall we play?"]
 
 
+def test_a_goal_whose_function_returns_no_text_counts_as_not_tried() -> None:
+    guide = agent()
+    goal = agenda.goal(guide, "joke", say=lambda ctx: None)  # type: ignore[arg-type, return-value]  # a mistake
+    with simulate(guide) as sim:
+        sim.advance(20.0)
+        assert sim.said == [] and goal.state(sim) == GoalState()
+        assert "takes str" in str(sim.failures[0][1])
+        sim.failures.clear()
+
+
+def test_the_texts_of_a_goal_may_come_from_a_generator() -> None:
+    guide = agent()
+    agenda.goal(guide, "game", say=(text for text in ("A game?", "Come on!")), done="yes")
+    with simulate(guide, settings=PATIENT) as sim:
+        sim.advance(90.0)
+        assert sim.said == ["A game?", "Come on!"]
+
+
 def test_a_goal_with_an_intent_is_worded_by_the_verbaliser_and_excludes_other_remarks() -> None:
     guide = agent()
     agenda.goal(guide, "wonder", intent="unknown", priority=2.0)

@@ -194,6 +194,7 @@ def test_an_empty_file_changes_nothing(text: str, tmp_path: Path) -> None:
             "topics:\n  distress: {remarks: [sad, (lonely]}",
             "mine.yaml:2: '(lonely' is not a regular expression (missing )",
         ),
+        ("topics:\n  distress: {remarks: [(?i)sad]}", "mine.yaml:2: '(?i)sad' is not a regular expression (global"),
         ("topics:\n  home: {questions: []}", "there are no questions"),
         (
             "topics:\n  home:\n    phrases:\n      - I live.\n      - 'In {hom}.'",

@@ -25,6 +25,13 @@ def test_a_remark_can_call_the_agent_by_its_name() -> None:
     assert found is not None and found.topic == "rude"
 
 
+def test_each_expression_of_a_topic_has_groups_of_its_own() -> None:
+    life = read_life()
+    parrot = Topic("parrot", (), ("Hm.",), remarks=(r"(?P<who>polly) .*", r"(\w+) \1", "(?P<who>cracker)"))
+    life = Life(life.facts, {"parrot": parrot})
+    assert [bool(remark_in(said, life)) for said in ("Polly wants", "blah blah", "cracker", "blah")] == [1, 1, 1, 0]
+
+
 def test_the_gravest_of_several_remarks_counts() -> None:
     found = remark_in("You are stupid. My cat died. I want to die.", read_life())
     assert found is not None and (found.topic, found.text) == ("distress", "i want to die")

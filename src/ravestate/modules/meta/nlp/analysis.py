@@ -17,7 +17,7 @@ from ravestate.language.moves import Move, bundled_moves, compared
 from ravestate.language.normal import Normal
 from ravestate.language.sentences import sentences as sentences_of
 
-from .answer import YesNo, yesno_of
+from .answer import YesNo, answers, yesno_of
 from .clause import Clause
 from .closing import Closing, closing_of
 from .contrast import Contrast, contrasts_of
@@ -119,6 +119,19 @@ class Analysis:
     def act(self, name: str) -> Match | None:
         """Return the best match of a sentence for the act `name`; None if no sentence matches it."""
         return self.acts.get(name)
+
+
+def load_models() -> None:
+    """Load the models with which `analyse` reads a text. Before, it recognises only sentences that equal an example.
+
+    Raises:
+        ModelMissing: The sentence model, or the package that runs it, is not installed.
+    """
+    for name in MATCHERS:
+        bundled_matcher(name).load()
+    answers().load()
+    kinds().load()
+    bundled_moves().load()
 
 
 def analyse(

@@ -43,7 +43,8 @@ def intent(module: rs.Module, name: str, *, examples: Sequence[str] | str | Path
             sentences, or a mapping from names of intents to such lists.
 
     Raises:
-        DeclarationError: There are no examples, the file is missing, the name is taken, or `module` lacks ``nlp``.
+        DeclarationError: There are no examples, the file is missing, the name is taken or ``none``, or `module` lacks
+            ``nlp``.
 
     Example:
         ::
@@ -60,6 +61,8 @@ def intent(module: rs.Module, name: str, *, examples: Sequence[str] | str | Path
     where = f"nlp.intent({module.name}, {name!r}) ({origin})"
     if not _requires_nlp(module):
         raise DeclarationError(f"{where}: the module needs nlp: write rs.Module({module.name!r}, requires=[..., nlp])")
+    if name == NONE:
+        raise DeclarationError(f"{where}: {NONE!r} stands for sentences without an intent: choose another name")
     if f"{module.name}:{name}" in (signal.name for signal in module.signals):
         raise DeclarationError(f"{where}: module {module.name} has a signal {name!r} already: choose another name")
     texts = _sentences(examples, name, Path(caller.f_code.co_filename).parent, where)
@@ -182,4 +185,4 @@ def _sentences(examples: Sequence[str] | str | Path, name: str, folder: Path, wh
     if not found:
         raise DeclarationError(f"{source}: there are no examples: write two or more sentences that a user may say")
     texts = cast("Iterable[Any]", found) if isinstance(found, Sequence) else ()
-    return parse_examples({name: list(texts)}, source).classes[name] if name != NONE else ()
+    return parse_examples({name: list(texts)}, source).classes[name]

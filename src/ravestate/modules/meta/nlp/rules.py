@@ -9,14 +9,10 @@ import ravestate as rs
 from ravestate.errors import PlatformError
 from ravestate.language.bundled import ModelMissing, warn_once
 from ravestate.language.loading import wait_for_prompt
-from ravestate.language.matcher import bundled_matcher
-from ravestate.language.moves import bundled_moves
 from ravestate.modules import interloc, rawio
 
 from . import names
-from .analysis import MATCHERS, analyse
-from .answer import answers
-from .inquiry import kinds
+from .analysis import analyse, load_models
 from .intent import intent_matcher
 from .names import Settings, module
 from .pipeline import pipeline
@@ -40,11 +36,7 @@ def learn(ctx: rs.RuleContext) -> None:
     """Load the matchers in the background. Until then, only sentences that equal an example are recognised."""
     wait_for_prompt()
     try:
-        for name in MATCHERS:
-            bundled_matcher(name).load()
-        answers().load()
-        kinds().load()
-        bundled_moves().load()
+        load_models()
     except ModelMissing as error:
         warn_once(ctx.log, error)
 

@@ -16,6 +16,7 @@ from ravestate.modules import rawio, verbaliser
 from ravestate.modules.meta.verbaliser.intents import Intent
 
 from .names import OPEN, GoalState, Status, goals, opportunity
+from .wish import whole_words
 
 Words = str | Iterable[str] | Callable[[rs.RuleContext], str | Awaitable[str]]
 
@@ -97,10 +98,10 @@ def goal(
     """
     whole = f"{module.name}:{name}"
     _check(whole, say, intent, priority, cooldown, tries)
+    texts = say if say is None or callable(say) else _texts(whole, say)
     frame = sys._getframe(1)  # pyright: ignore[reportPrivateUsage]  # messages name the line of the declaration
     origin = f"{frame.f_code.co_filename}:{frame.f_lineno}"
     known = len(module.rules)
-    texts = (say,) if isinstance(say, str) else say if callable(say) or say is None else tuple(say)
     said: rs.Slot[Any] = rawio.output if intent is None else verbaliser.intent
     done_words, refused_words = _expression(whole, "done", done), _expression(whole, "refused", refused)
 
@@ -139,8 +140,8 @@ def goal(
             )
         words = await _worded(ctx, texts, state.tries) if intent is None else ""
         over = done is None
+        ctx[said] = words if intent is None else intent  # first: words that the slot refuses are no try
         ctx[goals].add(whole, GoalState("done" if over else "pursued", state.tries + 1, ctx.now))
-        ctx[said] = words if intent is None else intent
         return rs.Retire("the goal's words were said") if over else None
 
     def end(ctx: rs.RuleContext, status: Status, *, by_words: bool) -> rs.Resign | None:
@@ -204,11 +205,21 @@ def _expression(goal: str, what: str, event: Condition | str | None) -> re.Patte
         hint = f": write {what}={event}.changed" if isinstance(event, rs.Slot) else ""
         raise rs.DeclarationError(f"goal {goal}: {what}={event!r} is neither a condition nor a text{hint}")
     try:
-        return re.compile(rf"(?<!\w)(?:{event})(?!\w)", re.IGNORECASE)
+        return whole_words(event)
     except re.error as error:
         raise rs.DeclarationError(
             f"goal {goal}: {what}={event!r} is not a regular expression ({error}): write for example {what}='yes|sure'"
         ) from None
+
+
+def _texts(goal: str, say: object) -> tuple[str, ...]:
+    """Return the texts of a goal. Read them only once, because they may come from a generator."""
+    texts = tuple(cast("Iterable[str]", (say,) if isinstance(say, str) or not isinstance(say, Iterable) else say))
+    if not texts or not all(isinstance(text, str) and text for text in texts):  # pyright: ignore[reportUnnecessaryIsInstance]
+        raise rs.DeclarationError(
+            f"goal {goal}: say={say!r}: write a text, several texts, or a function of the rule context"
+        )
+    return texts
 
 
 def _check(goal: str, say: object, intent: object, priority: object, cooldown: object, tries: object) -> None:
@@ -216,15 +227,11 @@ def _check(goal: str, say: object, intent: object, priority: object, cooldown: o
         raise rs.DeclarationError(
             f"goal {goal}: say={say!r} and intent={intent!r}: give exactly one of them, such as say='Shall we play?'"
         )
-    if say is not None and not callable(say):
-        texts = list(cast("Iterable[object]", (say,) if isinstance(say, str) or not isinstance(say, Iterable) else say))
-        if not texts or not all(isinstance(text, str) and text for text in texts):
-            raise rs.DeclarationError(
-                f"goal {goal}: say={say!r}: write a text, several texts, or a function of the rule context"
-            )
     for what, number in (("priority", priority), ("cooldown", cooldown)):
         if isinstance(number, bool) or not isinstance(number, (int, float)) or not 0 < number < math.inf:
-            raise rs.DeclarationError(f"goal {goal}: {what}={number!r} must be above 0: write {what}=1.0")
+            raise rs.DeclarationError(
+                f"goal {goal}: {what}={number!r} must be a finite number above 0: write {what}=1.0"
+            )
     if isinstance(tries, bool) or not isinstance(tries, int) or tries < 1:
         raise rs.DeclarationError(f"goal {goal}: tries={tries!r} must be a whole number of at least 1")
 

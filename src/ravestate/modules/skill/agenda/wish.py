@@ -10,9 +10,19 @@ from pydantic import AfterValidator, BaseModel, BeforeValidator, ConfigDict, Fie
 Text = Annotated[str, Field(min_length=1)]
 
 
+def whole_words(pattern: str) -> re.Pattern[str]:
+    """Compile an expression that matches whole words, in upper or lower case.
+
+    Raises:
+        re.error: It is not a regular expression.
+    """
+    re.compile(pattern)  # by itself: the brackets of "yes)|(no" would fit those of the next line
+    return re.compile(rf"(?<!\w)(?:{pattern})(?!\w)", re.IGNORECASE)
+
+
 def _expression(pattern: str) -> str:
     try:
-        re.compile(pattern)
+        whole_words(pattern)
     except re.error as error:
         raise ValueError(f"{pattern!r} is not a regular expression: {error}") from None
     return pattern
@@ -41,9 +51,9 @@ class Wish(BaseModel):
     """The goal's name; its rule is ``agenda:<name>``."""
     say: Text | Annotated[tuple[Text, ...], Field(min_length=1)]
     """The agent's words: a text, or several texts, one for each try in turn."""
-    priority: Annotated[float, Field(gt=0)] = 1.0
+    priority: Annotated[float, Field(gt=0, allow_inf_nan=False)] = 1.0
     """Goals of higher priority come first."""
-    cooldown: Annotated[float, Field(gt=0)] = 60.0
+    cooldown: Annotated[float, Field(gt=0, allow_inf_nan=False)] = 60.0
     """Seconds from one try to the next."""
     tries: Annotated[int, Field(ge=1)] = 2
     """The maximum number of tries."""

@@ -2,9 +2,11 @@
 
 from __future__ import annotations
 
+import re
 from collections.abc import Mapping
 from dataclasses import dataclass
 from datetime import date
+from functools import lru_cache
 
 Fact = str | tuple[str, ...] | tuple[tuple[str, str], ...]
 """A fact: one text, several texts, or pairs such as ``(("animal", "the octopus"),)``."""
@@ -60,3 +62,16 @@ class Life:
 
     def __hash__(self) -> int:
         return hash((tuple(self.facts.items()), tuple(self.topics.values()), self.others))
+
+
+@lru_cache(maxsize=1024)
+def whole_words(expression: str) -> re.Pattern[str]:
+    """Compile the expression of a remark so that it matches whole words.
+
+    Each expression has a pattern of its own: in a pattern for several, groups of the same name would clash.
+
+    Raises:
+        re.error: It is not a regular expression.
+    """
+    re.compile(expression)  # by itself: the brackets of "mad)|(sad" would fit those of the next line
+    return re.compile(rf"(?<!\S)(?:{expression})(?!\S)")

@@ -17,7 +17,7 @@ from ravestate.language.examples import bundled
 from ravestate.modules._yaml import fault, kind_of, read_text
 from ravestate.yaml_text import compose_yaml
 
-from .life import Fact, Life, Topic
+from .life import Fact, Life, Topic, whole_words
 
 if TYPE_CHECKING:
     import yaml
@@ -155,7 +155,7 @@ class _Reader:
         text = self._text(node)
         if part == "remarks":
             try:
-                re.compile(text)
+                whole_words(text)
             except re.error as error:
                 problem = f"{text!r} is not a regular expression ({error}): write for example i am (so )?sad"
                 raise self._fault(node, problem) from None

@@ -2,17 +2,15 @@
 
 from __future__ import annotations
 
-import re
 from collections.abc import Collection
 from dataclasses import dataclass
-from functools import lru_cache
 
 from ravestate.language import plain
 from ravestate.language.acts import heard, is_playful
 from ravestate.language.addressing import addressed
 from ravestate.modules.meta.nlp.analysis import Analysis
 
-from .life import Life
+from .life import Life, whole_words
 
 SURE = 0.9
 """The least confidence at which an act or a feeling counts as a remark. It is high, because banter resembles insults."""
@@ -47,11 +45,9 @@ def remark_in(utterance: str, life: Life, names: Collection[str] = ()) -> Remark
     called = (life.name, *names)
     said = [plain(addressed(sentence, called)) for sentence in heard(utterance, called)]
     for name, topic in life.topics.items():
-        if topic.remarks:
-            expression = _whole_words(topic.remarks)
-            for text in said:
-                if expression.search(text):
-                    return Remark(name, text)
+        for text in said:
+            if any(whole_words(expression).search(text) for expression in topic.remarks):
+                return Remark(name, text)
     return None
 
 
@@ -85,8 +81,3 @@ def _of_oneself(text: str, analysis: Analysis) -> bool:
     """Return whether users say harsh words about themselves: *dumb, I feel so dumb*."""
     words, all_words = plain(text).split(), set(plain(analysis.text).split())
     return _YOU.isdisjoint(words) and words[0] not in _ORDERS and not _I.isdisjoint(all_words)
-
-
-@lru_cache(maxsize=256)
-def _whole_words(expressions: tuple[str, ...]) -> re.Pattern[str]:
-    return re.compile(rf"(?<!\S)(?:{'|'.join(f'(?:{one})' for one in expressions)})(?!\S)")
