@@ -49,10 +49,10 @@ class PageServer:
         try:
             self._listener.bind(("127.0.0.1", self._port))
             self._listener.listen()  # from now on, a visitor who comes too early waits for the server
-        except OSError as error:
+        except (OSError, OverflowError) as error:
             self._listener.close()
             raise PlatformError(
-                f"the robot's page cannot listen on port {self._port} ({error.strerror}): another port: --port 0"
+                f"the robot's page cannot listen on port {self._port} ({error}): another port: --port 0"
             ) from error
         config = uvicorn.Config(
             app, lifespan="off", log_config=None, log_level="warning", access_log=False, ws_max_size=1 << 16,
