@@ -61,7 +61,8 @@ async def connect(ctx: rs.RuleContext) -> rs.Resign | None:
 
         def notice(message: Any) -> None:
             assert robot.direction is not None
-            ctx[direction] = robot.direction.radians(message)
+            if (angle := robot.direction.radians(message)) is not None:
+                ctx[direction] = angle
 
         def see(message: Any) -> None:
             assert robot.people is not None
