@@ -293,10 +293,13 @@ def test_in_half_duplex_the_agent_hears_nothing_while_it_speaks(
     assert sides(said, "agent") == [WHOLE] and len(scripted.heard) == 1
 
 
-def test_the_agent_asks_back_after_a_failure_of_the_recogniser(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+@pytest.mark.parametrize("ask_back_below", [0.38, 0.0])
+def test_the_agent_asks_back_after_a_failure_of_the_recogniser(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch, ask_back_below: float
+) -> None:
     script(monkeypatch, PlatformError("whisper did not answer"), "Tell me a story.")
     file = wav(tmp_path / "in.wav", track(TELL, (5.0, TELL[1]), length=8.0))
-    said = talk(file, None, storyteller(), settings=FAST)
+    said = talk(file, None, storyteller(), settings=settings(ask_back_below=ask_back_below))
     ask, story = sides(said, "agent")
     assert any(word in ask for word in ("catch", "again", "repeat")) and story == WHOLE
 
