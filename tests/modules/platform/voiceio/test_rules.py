@@ -200,6 +200,20 @@ def test_the_agent_asks_back_after_an_utterance_with_low_confidence(
     assert any(word in answer for word in ("catch", "again", "repeat"))
 
 
+def test_a_text_that_the_voice_cannot_speak_has_the_time_at_which_the_voice_failed(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    script(monkeypatch, "Tell me a story.")
+
+    def fail(*_: object) -> None:
+        raise PlatformError("the voice is broken")
+
+    file = wav(tmp_path / "in.wav", track(TELL, length=3.0))
+    monkeypatch.setattr(Synthesiser, "speak", fail)
+    user, agent = talk(file, None, storyteller(), settings=settings(filler_after=0.0))
+    assert user.end < agent.start == agent.end and WHOLE.startswith(agent.text)
+
+
 def teller(pieces: tuple[str, ...], *outputs: str) -> rs.Module:
     """Return a module that emits pieces without the flag ``rawio.speaking``, and then writes the outputs."""
     module = rs.Module("teller", requires=[rawio])

@@ -296,6 +296,7 @@ async def voice_it(ctx: rs.RuleContext) -> rs.Resign | None:
             except PlatformError as error:
                 if not talk.closed:
                     ctx.log.error("%s", error)
+                saying.start = saying.start or ctx.now
                 saying.heard = saying.text.strip()  # the voice failed, but the user may read the text
             except asyncio.CancelledError:
                 saying.heard = mouth.heard(saying.text)
