@@ -214,6 +214,22 @@ def test_a_text_that_the_voice_cannot_speak_has_the_time_at_which_the_voice_fail
     assert user.end < agent.start == agent.end and WHOLE.startswith(agent.text)
 
 
+def test_speech_that_the_end_of_the_agent_cuts_off_is_in_the_transcript(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    script(monkeypatch, "Tell me a story.")
+    tired = rs.Module("tired", requires=[voiceio])
+
+    @tired.rule(when=voiceio.agent_speaking.true.min_age(2.0), background=True)
+    async def go(ctx: rs.RuleContext) -> None:
+        ctx.stop()
+
+    del go
+    file = wav(tmp_path / "in.wav", track(TELL, length=3.0))
+    user, agent = talk(file, None, storyteller(), tired, settings=FAST)
+    assert user.text == "Tell me a story." and agent.cut and agent.text and WHOLE.startswith(agent.text)
+
+
 def teller(pieces: tuple[str, ...], *outputs: str) -> rs.Module:
     """Return a module that emits pieces without the flag ``rawio.speaking``, and then writes the outputs."""
     module = rs.Module("teller", requires=[rawio])
