@@ -96,7 +96,7 @@ class PageServer:
         try:
             while True:
                 self._hear(await websocket.receive_text())
-        except (WebSocketDisconnect, RuntimeError):
+        except (WebSocketDisconnect, RuntimeError, KeyError):  # KeyError: a binary frame, which the page never sends
             pass
         finally:
             leave()
@@ -105,9 +105,10 @@ class PageServer:
 
     def _hear(self, said: str) -> None:
         with contextlib.suppress(
-            ValueError, TypeError, AttributeError
-        ):  # ignore malformed frames, which the page never sends
+            ValueError, TypeError, AttributeError, OverflowError, RecursionError
+        ):  # ignore malformed frames
             told: Any = json.loads(said)
+            json.dumps(told, ensure_ascii=False).encode()  # a half of an emoji cannot be sent on
             if isinstance(told.get("say"), str) and told["say"].strip():
                 self._robot.hear(told["say"].strip()[:LONGEST], float(told.get("direction", 0.0)))
             if isinstance(told.get("people"), list):
