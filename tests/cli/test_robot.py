@@ -39,6 +39,23 @@ def test_the_robots_page_and_the_chat_page_are_served_and_end_cleanly(tmp_path: 
     assert (process.returncode, errors) == (0, "")
 
 
+@pytest.mark.parametrize(
+    ("wrong", "words"),
+    [
+        (["--bus", "nonsense"], "bus='nonsense' is not an address: write HOST:PORT"),
+        (["--bus", "127.0.0.1:99999"], "bus='127.0.0.1:99999' is not an address"),
+        (["--bus", "127.0.0.1:0", "--port", "99999"], "cannot listen on port 99999"),
+        (["--on", "auto", "--set", "ros1.master=http://localhost:99999", "--bus", "x"], "bus='x' is not an address"),
+    ],
+)
+def test_a_wrong_address_is_refused_with_a_message(
+    wrong: list[str], words: str, capsys: pytest.CaptureFixture[str], monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.delenv("ROS_VERSION", raising=False)
+    assert main(["robot", "--on", "bus", *wrong]) == 1
+    assert words in capsys.readouterr().err
+
+
 def test_an_unknown_robot_is_refused_with_a_message(capsys: pytest.CaptureFixture[str]) -> None:
     assert main(["robot", "--robot", "robby", "--on", "bus", "--bus", "127.0.0.1:0"]) == 1
     assert "did you mean 'roboy'" in capsys.readouterr().err

@@ -56,7 +56,7 @@ async def _serve(options: argparse.Namespace, chosen: AgentSpec, alone: bool) ->
     from ravestate.modules import roboyio, ros1, ros2
     from ravestate.modules.platform.roboyio.page_server import PageServer
     from ravestate.modules.platform.roboyio.stand_in import StandIn
-    from ravestate.modules.platform.ros import Bus
+    from ravestate.modules.platform.ros import Bus, host_and_port
     from ravestate.runtime.agent import Agent
     from ravestate.runtime.run import asked_by_signals, run_context, until_first_ends
 
@@ -66,8 +66,8 @@ async def _serve(options: argparse.Namespace, chosen: AgentSpec, alone: bool) ->
     link: str = options.on if options.on != "auto" else await _running(all_settings)
     async with AsyncExitStack() as stack:
         if link == "bus":
-            host, _, port = str(settings.bus).rpartition(":")
-            bus = await stack.enter_async_context(Bus(int(port or 0), host or "127.0.0.1"))
+            host, port = host_and_port(settings.bus)
+            bus = await stack.enter_async_context(Bus(port, host))
             node = ros2.make_node(ros2.Settings(backend="bus", bus=bus.address, node="stand_in"))
             chosen.settings.setdefault("roboyio", {}).update(link="bus", bus=bus.address)
         else:
@@ -117,6 +117,6 @@ async def _running(settings: dict[str, Any]) -> str:
         _, writer = await asyncio.wait_for(asyncio.open_connection(place.hostname, place.port or 11311), 1.0)
         writer.close()
         return "ros1"
-    except (OSError, TimeoutError):
+    except (OSError, TimeoutError, ValueError):  # ValueError: the address is wrong
         pass
     return "ros2" if os.environ.get("ROS_VERSION") == "2" else "bus"

@@ -136,16 +136,20 @@ def transcript(note: Callable[[Said], None]) -> Module:
     )
     async def hear_agent(ctx: RuleContext) -> None:
         """Pass the agent's utterances that are over to `note`."""
+        show_agent()
+        show_waiting()
+
+    def show_agent() -> None:
         for one in [one for one in begun if one.over]:
             begun.remove(one)
             if one.heard.strip():
                 cut = one.heard.strip() != one.text.strip()
                 note(Said("agent", one.heard.strip(), one.start, one.end, cut, not one.counts))
-        show_waiting()
 
     @witness.rule(when=shutdown)
     async def end(ctx: RuleContext) -> None:
         """Pass the remaining utterances to `note`."""
+        show_agent()  # the end of the agent has cut off its speech
         begun.clear()
         show_waiting()
 

@@ -7,11 +7,13 @@ import sys
 import threading
 from collections.abc import Iterator
 from pathlib import Path
+from typing import Any
 
 import pytest
 
 from ravestate.errors import PlatformError
 from ravestate.modules._children import process as model_process
+from ravestate.modules._children.child import Child
 from ravestate.modules._children.process import Backend, ModelProcess
 
 BACKEND = """
@@ -20,6 +22,8 @@ import os, threading
 def load(config):
     if config.get("broken"):
         raise ValueError("the file is damaged")
+    if config.get("stuck"):
+        threading.Event().wait(60)
     print("a library prints")
 
     def handle(header, data):
@@ -119,6 +123,25 @@ def test_a_closed_process_refuses_requests(process: ModelProcess) -> None:
     assert pid is not None
     with pytest.raises(ProcessLookupError):
         os.kill(pid, 0)
+
+
+def test_a_process_that_is_closed_while_it_starts_does_not_load_its_model(
+    backend: Backend, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """The caller of `close` may be an event loop, which must not wait for the model."""
+    monkeypatch.setattr(model_process, "LOADING", 3.0)
+    one = ModelProcess(backend, {"stuck": True})
+    closing = threading.Thread(target=one.close)
+
+    def child(*args: Any, **options: Any) -> Child:
+        closing.start()
+        closing.join(0.1)  # it now waits for the end of the start
+        return Child(*args, **options)
+
+    monkeypatch.setattr(model_process, "Child", child)
+    with pytest.raises(PlatformError, match="killed by signal 9"):
+        one.start()
+    closing.join()
 
 
 def test_users_of_the_same_model_share_its_process(backend: Backend) -> None:

@@ -152,6 +152,8 @@ class ModelProcess:
             raise PlatformError(
                 f"{self._backend.owner}: cannot start {self._python!r} for {self._backend.name}: {error}"
             ) from error
+        if self._closed:  # `close` came while the process started, and found no process to kill
+            self._process.kill()
         self._rest = b""
         answer, _ = self._exchange(self._config, b"", LOADING)
         if "error" in answer:

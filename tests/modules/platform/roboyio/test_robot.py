@@ -1,6 +1,8 @@
 """The data files of robots."""
 
 from pathlib import Path
+from types import SimpleNamespace
+from typing import Literal
 
 import pytest
 
@@ -31,6 +33,13 @@ def test_directions_in_degrees_become_radians_between_minus_pi_and_pi() -> None:
 
     assert port.radians(Message()) == pytest.approx(-1.5708, abs=1e-3)
     assert port.pack(3) == {"data": 3}
+
+
+@pytest.mark.parametrize("unit", ["radians", "degrees"])
+@pytest.mark.parametrize("value", [float("nan"), float("inf")])
+def test_a_sensor_that_sends_no_number_gives_no_direction(unit: Literal["radians", "degrees"], value: float) -> None:
+    port = Direction(topic="/d", type="std_msgs/Float32", field="data", unit=unit)
+    assert port.radians(SimpleNamespace(data=value)) is None
 
 
 def test_wrong_robot_names_and_files_are_refused_with_a_message(tmp_path: Path) -> None:

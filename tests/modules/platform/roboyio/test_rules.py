@@ -59,6 +59,9 @@ def test_the_agent_hears_through_the_robot_and_controls_its_voice_face_head_and_
                 await until(lambda: "roboyio:Ada" in context.read(interloc.users))
                 if name == "roboy":
                     await until(lambda: any(looks["gesture"][0] == "wave" for looks in seen))
+                robot.see(crowd := ["Ada", "Eve", "Bob", "Dan", "Cleo", "Ida", "Tom"])
+                await until(lambda: len(context.read(interloc.users)) == len(crowd))
+                assert list(context.read(interloc.users).values()) == crowd  # in the robot's order
                 robot.see([])
                 await until(lambda: not context.read(interloc.users))
             await robot.close()

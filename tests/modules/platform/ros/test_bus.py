@@ -89,9 +89,13 @@ def test_wrong_types_and_addresses_are_refused_with_a_reason(caplog: pytest.LogC
             await until(lambda: bus.find("subscriber", "/chat"))
             other.advertise("/chat", "std_msgs/String", qos=ALL).publish("hello")
             await until(lambda: "/chat carries std_msgs/msg/String, not std_msgs/msg/Int32" in caplog.text)
-        node = ros1.make_node(ros1.Settings(backend="bus", bus="here"))
-        with pytest.raises(PlatformError, match="write HOST:PORT"):
+        for address in ("here", "127.0.0.1:99999"):
+            node = ros1.make_node(ros1.Settings(backend="bus", bus=address))
+            with pytest.raises(PlatformError, match="write HOST:PORT"):
+                node.start()
+        async with opened(ros1.make_node(ros1.Settings(backend="bus", bus="no..host:7411"))) as node:
             node.start()
+            await until(lambda: "waits for the bus at no..host:7411" in caplog.text)
         with (
             socket.create_server(("127.0.0.1", 0)) as taken,
             pytest.raises(PlatformError, match="does another stand-in robot run"),

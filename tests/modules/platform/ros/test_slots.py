@@ -8,7 +8,7 @@ from typing import Any
 import pytest
 
 import ravestate as rs
-from modules.platform.ros.networks import OWN, Network, the_loop, until
+from modules.platform.ros.networks import OWN, PATIENCE, Network, free_port, the_loop, until
 from ravestate.modules import ros1, ros2
 from ravestate.testing import simulate
 
@@ -197,6 +197,31 @@ def test_the_result_of_an_action_raises_the_changed_signal_of_its_slot(
         assert agent.results == [[0, 1, 1, 2, 3]]
 
     ros2_network.run(main)
+
+
+@pytest.mark.parametrize(
+    ("type_", "words"),
+    [("actionlib/Test", "the goal was cancelled"), ("nowhere/Walk", "there is no definition of nowhere/action/Walk")],
+)
+def test_perform_fails_if_the_slots_own_rule_ends_without_a_result(type_: str, words: str) -> None:
+    agent = rs.Module("agent")
+    stop, failures = agent.signal("stop", input=True), asyncio.Queue[str]()
+    walk = ros2.action(agent, "walk", action="/walk", type=type_, until=stop)
+
+    @agent.rule(when=rs.startup, writes=walk)
+    async def go(ctx: rs.RuleContext) -> None:
+        try:
+            await ros2.perform(ctx, walk, {})
+        except rs.PlatformError as error:
+            failures.put_nowait(str(error))
+
+    async def main() -> None:
+        settings = {"ros2": {"backend": "bus", "bus": f"127.0.0.1:{free_port()}", "definitions": [str(OWN)]}}
+        async with rs.Context(agent, settings=settings) as context, asyncio.timeout(PATIENCE):
+            await until(lambda: not failures.empty(), lambda: context.emit(stop))
+            assert words in await failures.get()
+
+    asyncio.run(main())
 
 
 def test_in_a_simulation_the_test_writes_the_slots_and_no_node_connects() -> None:

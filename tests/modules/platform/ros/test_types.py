@@ -19,6 +19,8 @@ VALUES: list[tuple[str, Any, Any]] = [
     ("geometry_msgs/Twist", {"linear": {"x": 1}}, {"linear": {"x": 1.0, "y": 0.0, "z": 0.0}, "angular": {"x": 0.0, "y": 0.0, "z": 0.0}}),
     ("std_msgs/ColorRGBA", {"r": numpy.float32(0.5)}, {"r": 0.5, "g": 0.0, "b": 0.0, "a": 0.0}),
     ("std_msgs/UInt8MultiArray", {"data": b"\x01\x02"}, {"layout": {"dim": [], "data_offset": 0}, "data": [1, 2]}),
+    ("std_msgs/UInt8MultiArray", {"data": numpy.arange(8, dtype=numpy.uint8).reshape(2, 2, 2)}, {"layout": {"dim": [], "data_offset": 0}, "data": [0, 1, 2, 3, 4, 5, 6, 7]}),
+    ("std_msgs/Float32MultiArray", {"data": numpy.arange(6, dtype=numpy.float32)[::3]}, {"layout": {"dim": [], "data_offset": 0}, "data": [0.0, 3.0]}),
 ]  # fmt: skip
 
 
@@ -42,6 +44,10 @@ def test_plain_data_can_be_encoded_as_a_message_and_decoded_again(
         ("geometry_msgs/Twist", 3, "takes the fields linear: geometry_msgs/Vector3"),
         ("geometry_msgs/Twist", {"linear": {"x": "fast"}}, r"linear.x takes float64, not 'fast'"),
         ("std_msgs/UInt8", {"data": 300}, "does not fit"),
+        ("std_msgs/UInt8MultiArray", {"data": numpy.array([1, 300])}, "data takes uint8, not 300"),
+        ("std_msgs/UInt8MultiArray", {"data": [0.5]}, "data takes uint8, not 0.5"),
+        ("std_msgs/Int32MultiArray", {"data": numpy.array([numpy.nan])}, "data takes int32, not nan"),
+        ("geometry_msgs/PoseWithCovariance", {"covariance": numpy.eye(5)}, "takes 36 values, not 25"),
         ("sensor_msgs/CameraInfo", {"header": {"stamp": {"sec": True}}}, "takes int32, not True"),
     ],
 )

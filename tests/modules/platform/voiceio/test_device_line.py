@@ -49,12 +49,17 @@ class PortAudio:
 
 
 class Stream:
-    def __init__(self, _: PortAudio, rate: int, size: int, *, device: Any, callback: Any, channels: int, dtype: str):
+    def __init__(
+        self, audio: PortAudio, rate: int, size: int, *, device: Any, callback: Any, channels: int, dtype: str
+    ):
         assert (channels, dtype) == (1, "int16")
+        self.audio = audio
         self.rate, self.size, self.device, self.callback = rate, size, device, callback
         self.open = True
 
-    def start(self) -> None: ...
+    def start(self) -> None:
+        if self.audio.broken == "loudspeaker that opens" and self is self.audio.loudspeaker:
+            raise self.audio.PortAudioError("Error starting stream")
 
     def abort(self) -> None: ...
 
@@ -164,6 +169,25 @@ def test_the_agent_continues_without_its_loudspeaker_and_finds_it_again(
     run(follow)
     assert "the loudspeaker is gone: looking for it again" in caplog.messages
     assert caplog.messages[-1] == "the loudspeaker is back"
+
+
+def test_a_loudspeaker_that_opens_but_does_not_start_is_not_back(
+    audio: PortAudio, caplog: pytest.LogCaptureFixture
+) -> None:
+    async def follow() -> None:
+        line = DeviceLine()
+        first = audio.loudspeaker
+        feeding = asyncio.create_task(feed_microphone(audio))
+        line.play(bytes(9600))
+        audio.broken = "loudspeaker that opens"
+        await line.drained()
+        assert audio.loudspeaker is not first and not audio.loudspeaker.open and audio.microphone.open
+        await anext(line.blocks())
+        line.close()
+        feeding.cancel()
+
+    run(follow)
+    assert caplog.messages[-1] == "the loudspeaker is still away: the agent goes on without it"
 
 
 async def feed_microphone(audio: PortAudio) -> None:

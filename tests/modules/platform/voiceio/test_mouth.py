@@ -100,6 +100,22 @@ def test_released_speech_continues_with_the_word_that_was_cut() -> None:
     run(listen)
 
 
+def test_a_word_that_was_heard_before_a_hold_still_counts_when_it_is_repeated() -> None:
+    async def listen() -> None:
+        one = mouth()
+        one.begin()
+        one.queue(said(), 0)
+        await _wait(0.9)
+        assert one.heard(TEXT) == "one two"
+        one.hold(0.9)
+        one.release()  # "two" begins again
+        assert one.heard(TEXT) == "one two"
+        one.begin()
+        assert one.heard(TEXT) == ""
+
+    run(listen)
+
+
 def test_a_sentence_queued_during_a_hold_waits_for_the_release() -> None:
     async def listen() -> None:
         one = mouth()

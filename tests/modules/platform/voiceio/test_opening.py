@@ -4,13 +4,14 @@ import asyncio
 import gc
 import threading
 from pathlib import Path
-from typing import cast
+from typing import Any, cast
 
 import pytest
 
 from modules.platform.voiceio.speech import FAST, Scripted, wav
 from modules.platform.voiceio.test_wav_line import run
 from ravestate.errors import PlatformError
+from ravestate.modules._children import process
 from ravestate.modules.platform.voiceio import Settings, device_line, opening, sound
 from ravestate.modules.platform.voiceio.ear import Turn
 from ravestate.modules.platform.voiceio.echo import EchoCanceller
@@ -121,6 +122,32 @@ def test_recognition_of_a_turn_is_cancelled_when_the_user_continues_the_turn(mon
         conversation.close()
 
     asyncio.run(talk())
+
+
+@pytest.mark.parametrize("name", ["Recogniser", "Synthesiser"])
+def test_a_line_that_closes_while_its_models_open_leaves_no_user_of_a_model(
+    name: str, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    settings = Settings(**{**FAST["voiceio"], "voice": "espeak:en-gb", "threads": 3})  # no other test uses these
+    makers, real = (opening.Recogniser, opening.Synthesiser), getattr(opening, name)
+
+    async def talk() -> None:
+        loop = asyncio.get_running_loop()
+
+        def cancelled(*args: Any, **options: Any) -> Any:
+            loop.call_soon_threadsafe(task.cancel)
+            return real(*args, **options)
+
+        monkeypatch.setattr(opening, name, cancelled)
+        task = asyncio.create_task(opening.open_conversation(WavLine(None), settings, pytest.fail))  # type: ignore[arg-type]
+        await asyncio.wait([task])
+        assert task.cancelled()
+
+    asyncio.run(talk())
+    for maker in makers:
+        one = maker(settings)
+        assert not process.is_shared(one.process)
+        one.close()
 
 
 def test_two_conversations_share_the_loaded_model_for_melodies(monkeypatch: pytest.MonkeyPatch) -> None:

@@ -122,6 +122,22 @@ def test_notes_about_sounds_and_unlikely_words_are_removed_from_the_text(
     one.close()
 
 
+@pytest.mark.parametrize("language", ["en-US", "EN"])
+def test_a_language_may_have_a_region_and_capitals(language: str, monkeypatch: pytest.MonkeyPatch) -> None:
+    """Whisper refuses both."""
+    one = Recogniser(Settings(model="tiny.en", language=language))
+    asked: list[str] = []
+
+    def request(header: dict[str, Any], *_: object, **__: object) -> tuple[dict[str, object], bytes]:
+        asked.append(header["language"])
+        return {"text": "Hello.", "confidence": 0.9, "no_speech": 0.0}, b""
+
+    monkeypatch.setattr(one.process, "request", request)
+    one.recognise(b"")
+    assert asked == ["en"]
+    one.close()
+
+
 def test_after_a_crash_the_recogniser_tries_once_more(monkeypatch: pytest.MonkeyPatch) -> None:
     one = Recogniser(Settings(model="tiny.en"))
     attempts: list[bool] = []

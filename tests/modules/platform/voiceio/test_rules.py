@@ -200,6 +200,36 @@ def test_the_agent_asks_back_after_an_utterance_with_low_confidence(
     assert any(word in answer for word in ("catch", "again", "repeat"))
 
 
+def test_a_text_that_the_voice_cannot_speak_has_the_time_at_which_the_voice_failed(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    script(monkeypatch, "Tell me a story.")
+
+    def fail(*_: object) -> None:
+        raise PlatformError("the voice is broken")
+
+    file = wav(tmp_path / "in.wav", track(TELL, length=3.0))
+    monkeypatch.setattr(Synthesiser, "speak", fail)
+    user, agent = talk(file, None, storyteller(), settings=settings(filler_after=0.0))
+    assert user.end < agent.start == agent.end and WHOLE.startswith(agent.text)
+
+
+def test_speech_that_the_end_of_the_agent_cuts_off_is_in_the_transcript(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    script(monkeypatch, "Tell me a story.")
+    tired = rs.Module("tired", requires=[voiceio])
+
+    @tired.rule(when=voiceio.agent_speaking.true.min_age(2.0), background=True)
+    async def go(ctx: rs.RuleContext) -> None:
+        ctx.stop()
+
+    del go
+    file = wav(tmp_path / "in.wav", track(TELL, length=3.0))
+    user, agent = talk(file, None, storyteller(), tired, settings=FAST)
+    assert user.text == "Tell me a story." and agent.cut and agent.text and WHOLE.startswith(agent.text)
+
+
 def teller(pieces: tuple[str, ...], *outputs: str) -> rs.Module:
     """Return a module that emits pieces without the flag ``rawio.speaking``, and then writes the outputs."""
     module = rs.Module("teller", requires=[rawio])
@@ -293,10 +323,13 @@ def test_in_half_duplex_the_agent_hears_nothing_while_it_speaks(
     assert sides(said, "agent") == [WHOLE] and len(scripted.heard) == 1
 
 
-def test_the_agent_asks_back_after_a_failure_of_the_recogniser(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+@pytest.mark.parametrize("ask_back_below", [0.38, 0.0])
+def test_the_agent_asks_back_after_a_failure_of_the_recogniser(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch, ask_back_below: float
+) -> None:
     script(monkeypatch, PlatformError("whisper did not answer"), "Tell me a story.")
     file = wav(tmp_path / "in.wav", track(TELL, (5.0, TELL[1]), length=8.0))
-    said = talk(file, None, storyteller(), settings=FAST)
+    said = talk(file, None, storyteller(), settings=settings(ask_back_below=ask_back_below))
     ask, story = sides(said, "agent")
     assert any(word in ask for word in ("catch", "again", "repeat")) and story == WHOLE
 

@@ -49,10 +49,10 @@ class PageServer:
         try:
             self._listener.bind(("127.0.0.1", self._port))
             self._listener.listen()  # from now on, a visitor who comes too early waits for the server
-        except OSError as error:
+        except (OSError, OverflowError) as error:
             self._listener.close()
             raise PlatformError(
-                f"the robot's page cannot listen on port {self._port} ({error.strerror}): another port: --port 0"
+                f"the robot's page cannot listen on port {self._port} ({error}): another port: --port 0"
             ) from error
         config = uvicorn.Config(
             app, lifespan="off", log_config=None, log_level="warning", access_log=False, ws_max_size=1 << 16,
@@ -96,7 +96,7 @@ class PageServer:
         try:
             while True:
                 self._hear(await websocket.receive_text())
-        except (WebSocketDisconnect, RuntimeError):
+        except (WebSocketDisconnect, RuntimeError, KeyError):  # KeyError: a binary frame, which the page never sends
             pass
         finally:
             leave()
@@ -105,9 +105,10 @@ class PageServer:
 
     def _hear(self, said: str) -> None:
         with contextlib.suppress(
-            ValueError, TypeError, AttributeError
-        ):  # ignore malformed frames, which the page never sends
+            ValueError, TypeError, AttributeError, OverflowError, RecursionError
+        ):  # ignore malformed frames
             told: Any = json.loads(said)
+            json.dumps(told, ensure_ascii=False).encode()  # a half of an emoji cannot be sent on
             if isinstance(told.get("say"), str) and told["say"].strip():
                 self._robot.hear(told["say"].strip()[:LONGEST], float(told.get("direction", 0.0)))
             if isinstance(told.get("people"), list):

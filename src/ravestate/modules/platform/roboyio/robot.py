@@ -67,9 +67,14 @@ class Direction(Port):
 
     unit: Literal["radians", "degrees"] = "radians"
 
-    def radians(self, message: Any) -> float:
-        """Return the direction in a message (radians from -pi to pi; 0: straight ahead, positive: left)."""
+    def radians(self, message: Any) -> float | None:
+        """Return the direction in a message (radians from -pi to pi; 0: straight ahead, positive: left).
+
+        Return None if the sensor has sent NaN or infinity, because it then has no direction.
+        """
         value = float(self.unpack(message))
+        if not math.isfinite(value):
+            return None
         angle = math.radians(value) if self.unit == "degrees" else value
         return math.atan2(math.sin(angle), math.cos(angle))
 

@@ -61,11 +61,12 @@ async def connect(ctx: rs.RuleContext) -> rs.Resign | None:
 
         def notice(message: Any) -> None:
             assert robot.direction is not None
-            ctx[direction] = robot.direction.radians(message)
+            if (angle := robot.direction.radians(message)) is not None:
+                ctx[direction] = angle
 
         def see(message: Any) -> None:
             assert robot.people is not None
-            names = {name.strip() for name in str(robot.people.unpack(message)).split(",")} - {""}
+            names = [name for each in str(robot.people.unpack(message)).split(",") if (name := each.strip())]
             for key in [key for key in ctx[interloc.users] if key.startswith("roboyio:")]:
                 if key.partition(":")[2] not in names:
                     ctx[interloc.users].remove(key)

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from .bag import play
-from .bus import Bus
+from .bus import Bus, host_and_port
 from .naming import quality
 from .node import Channel, Node
 from .rules import NodeSettings, connect, open_node
@@ -22,6 +22,7 @@ __all__ = [
     "TopicSlot",
     "Types",
     "connect",
+    "host_and_port",
     "open_node",
     "perform",
     "plain",

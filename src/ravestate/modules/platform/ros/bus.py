@@ -25,6 +25,18 @@ AGAIN = 0.5
 """The seconds between two attempts to reach the bus."""
 
 
+def host_and_port(address: str) -> tuple[str, int]:
+    """Return the host and the port in the address of a bus, such as ``127.0.0.1:7411``.
+
+    Raises:
+        PlatformError: The text is not an address.
+    """
+    host, _, port = address.rpartition(":")
+    if not port.isdecimal() or int(port) > 65535:
+        raise PlatformError(f"bus={address!r} is not an address: write HOST:PORT, such as 127.0.0.1:7411")
+    return host or "127.0.0.1", int(port)
+
+
 class Bus:
     """The server of the bus. ``async with Bus(port) as bus`` runs it on the current event loop.
 
@@ -243,13 +255,12 @@ class BusLink:
 
     def start(self) -> None:
         """Connect as soon as the bus runs."""
-        host, _, port = self._address.rpartition(":")
-        if not port.isdecimal():
-            self.failed = PlatformError(
-                f"bus={self._address!r} is not an address: write HOST:PORT, such as 127.0.0.1:7411"
-            )
+        try:
+            host, port = host_and_port(self._address)
+        except PlatformError as error:
+            self.failed = error
             return
-        self._task = asyncio.ensure_future(self._connect(host or "127.0.0.1", int(port)))
+        self._task = asyncio.ensure_future(self._connect(host, port))
 
     async def _connect(self, host: str, port: int) -> None:
         loop, told = asyncio.get_running_loop(), False
@@ -259,7 +270,7 @@ class BusLink:
             try:
                 await loop.sock_connect(sock, (host, port))
                 break
-            except OSError:
+            except (OSError, UnicodeError):  # UnicodeError: no host can have this name
                 sock.close()
                 if not told:
                     told = True

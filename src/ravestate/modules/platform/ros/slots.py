@@ -96,6 +96,19 @@ class Goal:
     result: asyncio.Future[Any]
     task: asyncio.Task[Any] | None = None
 
+    def follow(self, task: asyncio.Task[Any]) -> None:
+        """Pass on the end of the task that sends the goal, however it ends."""
+        self.task = task
+        task.add_done_callback(self._end)
+
+    def _end(self, task: asyncio.Task[Any]) -> None:
+        if self.result.done():
+            return
+        if reason := _failure(task):
+            self.result.set_exception(PlatformError(reason))
+        else:
+            self.result.set_result(task.result())
+
     def cancel(self) -> None:
         """Cancel the goal."""
         if self.task is not None:
@@ -299,31 +312,27 @@ class Declarations:
             """Send the goal, and raise its feedback and its result."""
             if (here := ctx[node]) is None:
                 return rs.Resign("there is no node")
-            await here.prepare()
             asked = ctx.payload(slot.requested)
-            goal = asked if isinstance(asked, Goal) else None
-            value = asked if goal is None else goal.value
-            call = _channel(here, slot).call(value, lambda message: ctx.emit(slot.feedback, message))
-            task = asyncio.ensure_future(call)
+
+            async def send() -> Any:
+                await here.prepare()
+                value = asked.value if isinstance(asked, Goal) else asked
+                return await _channel(here, slot).call(value, lambda message: ctx.emit(slot.feedback, message))
+
+            task = asyncio.create_task(send())
             goals = here.goals.setdefault(slot.name, set())
             goals.add(task)
-            if goal is not None:
-                goal.task = task
+            if isinstance(asked, Goal):
+                asked.follow(task)
             try:
                 await asyncio.wait((task,))
             finally:
                 task.cancel()
                 goals.discard(task)
-            reason = "the goal was cancelled" if task.cancelled() else str(task.exception() or "")
-            if reason:
+            if reason := _failure(task):
                 ctx.emit(slot.failed, reason)
             else:
                 ctx.emit(slot.changed, task.result())
-            if goal is not None and not goal.result.done():
-                if reason:
-                    goal.result.set_exception(PlatformError(reason))
-                else:
-                    goal.result.set_result(task.result())
             return None
 
         return slot
@@ -370,6 +379,11 @@ async def perform(ctx: rs.RuleContext, slot: ActionSlot, goal: Any) -> Any:
     except asyncio.CancelledError:
         sent.cancel()
         raise
+
+
+def _failure(task: asyncio.Task[Any]) -> str:
+    """Return why a goal has no result; empty if it has one."""
+    return "the goal was cancelled" if task.cancelled() else str(task.exception() or "")
 
 
 def module_of(module: Any) -> rs.Module:

@@ -170,19 +170,10 @@ class Types:
         items: Any = [] if value is None else value
         if isinstance(items, str) or not hasattr(items, "__len__"):
             raise PlatformError(f"{path} takes a list, not {items!r}")
+        if inner == BASE and inside[0] != "string":
+            return _array([0] * count if value is None else items, inside[0], count, path)
         if count and value is not None and len(items) != count:
             raise PlatformError(f"{path} takes {count} values, not {len(items)}")
-        if inner == BASE and inside[0] != "string":
-            import numpy
-
-            numbers = {"byte": "uint8", "octet": "uint8", "char": "uint8"}.get(inside[0], inside[0])
-            if isinstance(items, (bytes, bytearray, memoryview)):
-                items = cast("bytes", items)
-                return numpy.frombuffer(items, numpy.uint8)
-            try:
-                return numpy.asarray(items if value is not None else [0] * count, numbers)
-            except (ValueError, TypeError, OverflowError) as error:
-                raise PlatformError(f"{path} takes numbers ({inside[0]}): {error}") from error
         if value is None:
             items = [None] * count
         return [self._field(item, (inner, inside), f"{path}[{n}]") for n, item in enumerate(items)]
@@ -247,6 +238,24 @@ def plain(message: Any) -> Any:
     if hasattr(message, "tolist"):
         return message.tolist()
     return [plain(item) for item in message] if isinstance(message, list) else message  # pyright: ignore[reportUnknownVariableType]
+
+
+def _array(items: Any, base: str, count: int, path: str) -> Any:
+    """Return numbers as a flat array, in the order of an array with several dimensions, such as a picture."""
+    import numpy
+
+    try:
+        given = numpy.ravel(memoryview(items) if isinstance(items, bytes) else items)
+        with numpy.errstate(invalid="ignore"):  # a number that is not finite; it is refused below
+            array = given.astype({"byte": "uint8", "octet": "uint8", "char": "uint8"}.get(base, base), copy=False)
+    except (ValueError, TypeError, OverflowError) as error:
+        raise PlatformError(f"{path} takes numbers ({base}): {error}") from error
+    if count and len(array) != count:
+        raise PlatformError(f"{path} takes {count} values, not {len(array)}")
+    # numpy cuts a fraction off, and wraps a number that is too large.
+    if given.dtype != array.dtype and not base.startswith("float") and (wrong := given[given != array]).size:
+        raise PlatformError(f"{path} takes {base}, not {wrong[0]!s}")
+    return array
 
 
 def _checked(value: Any, base: str, path: str) -> Any:

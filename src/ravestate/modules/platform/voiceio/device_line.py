@@ -71,10 +71,14 @@ class DeviceLine:
                 continue
             device = None if name == "default" else name
             try:
-                self._streams.append(
-                    stream(rate, round(BLOCK * rate), device=device, callback=callback, channels=1, dtype="int16")
-                )
-                self._streams[-1].start()
+                with contextlib.ExitStack() as failed:
+                    opened = stream(
+                        rate, round(BLOCK * rate), device=device, callback=callback, channels=1, dtype="int16"
+                    )
+                    failed.callback(opened.close)
+                    opened.start()
+                    failed.pop_all()
+                self._streams.append(opened)
             except (sound.PortAudioError, ValueError) as error:
                 if again and what == "loudspeaker":
                     self.stop()  # drop the inaudible sound; the next sound makes `_keep_open` look for the loudspeaker

@@ -110,6 +110,7 @@ class Mouth:
         self.silent_since: float | None = None
         """The time at which `hold` stopped the speech; None if the speech is not held."""
         self._queue: list[_Queued] = []
+        self._heard = 0  # how many characters the user had heard at the last `release`, which repeats the cut word
         self._end = 0.0
         self._held_at: float | None = None
         self._released = asyncio.Event()
@@ -145,6 +146,7 @@ class Mouth:
     def begin(self) -> None:
         """Begin a new utterance."""
         self._queue.clear()
+        self._heard = 0
         self._held_at = None
         self._end = self.line.played
 
@@ -171,6 +173,7 @@ class Mouth:
         """Continue the speech that `hold` stopped, from the beginning of the word that was cut."""
         if self._held_at is None:
             return
+        self._heard = self._heard_end()
         stopped, self._held_at, self.silent_since = self._held_at, None, None
         at = self.line.played
         left = [part for part in self._queue if part.end > stopped]
@@ -215,7 +218,10 @@ class Mouth:
 
     def heard(self, text: str) -> str:
         """Return the words of the utterance `text` that the user has heard."""
-        position, end = self.position, 0
+        return text[: self._heard_end()].strip()
+
+    def _heard_end(self) -> int:
+        position, end = self.position, self._heard
         for part in self._queue:
             words, sound = part.spoken.words, part.spoken.sound
             for number, word in enumerate(words):
@@ -223,7 +229,7 @@ class Mouth:
                 length = _speech_end(sound[2 * round(word.time * OUT_RATE) : 2 * round(following * OUT_RATE)])
                 if part.start + word.time + HEARD * length <= position:
                     end = max(end, part.place + word.end)
-        return text[:end].strip()
+        return end
 
     # ------------------------------------------------------------------------------- the echo's reference
 

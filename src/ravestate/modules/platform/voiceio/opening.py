@@ -109,11 +109,11 @@ async def open_conversation(given: Line | None, settings: Settings, warn: Callab
     Raises:
         PlatformError: A model, a program or a device is missing. The message says how to get it.
     """
-    recogniser = await asyncio.to_thread(Recogniser, settings)
+    recogniser = Recogniser(settings)  # in a thread, it would get lost if this task were cancelled
     voice = line = None
     try:
         recorded = given is None and is_file(settings.source)  # the same recording must lead to the same conversation
-        voice = await asyncio.to_thread(Synthesiser, settings, shared=not recorded)
+        voice = Synthesiser(settings, shared=not recorded)
         await asyncio.gather(asyncio.to_thread(recogniser.load), asyncio.to_thread(voice.load))
         if (melody := await asyncio.to_thread(_melody)) is None:
             warn("there is no model for the end of a turn (smart-turn): pauses are longer. `make voice` fetches it")

@@ -53,7 +53,7 @@ class Recogniser:
     """
 
     def __init__(self, settings: Settings) -> None:
-        self._language = settings.language
+        self._language = settings.language.partition("-")[0].lower()  # Whisper does not know the region of `en-US`
         self._patience = settings.recogniser_timeout
         if settings.recogniser == "grammar":
             if find_spec("pocketsphinx") is None:

@@ -184,7 +184,7 @@ async def take_first_turn(ctx: rs.RuleContext) -> rs.Resign | None:
 async def understand(ctx: rs.RuleContext) -> rs.Resign | None:
     """If the recogniser is confident, pass on the user's words."""
     said = ctx.payload(utterance)
-    if said.confidence < ctx.settings.ask_back_below:
+    if _is_unclear(said, ctx.settings):
         return rs.Resign(f"the recogniser's confidence is {said.confidence:.2f}")
     ctx[rawio.input] = said.text
     return None
@@ -194,10 +194,15 @@ async def understand(ctx: rs.RuleContext) -> rs.Resign | None:
 async def ask_back(ctx: rs.RuleContext) -> rs.Resign | None:
     """If the recogniser is not confident, ask the user to repeat their words."""
     said = ctx.payload(utterance)
-    if said.confidence >= ctx.settings.ask_back_below:
+    if not _is_unclear(said, ctx.settings):
         return rs.Resign("the words are clear")
     ctx[verbaliser.intent] = Intent("unclear", package=__package__)
     return None
+
+
+def _is_unclear(said: Utterance, settings: Settings) -> bool:
+    """Return whether the agent asks back. After a failure of the recogniser, there are no words at all."""
+    return not said.text or said.confidence < settings.ask_back_below
 
 
 # ------------------------------------------------------------------------------------ speaking
@@ -291,6 +296,7 @@ async def voice_it(ctx: rs.RuleContext) -> rs.Resign | None:
             except PlatformError as error:
                 if not talk.closed:
                     ctx.log.error("%s", error)
+                saying.start = saying.start or ctx.now
                 saying.heard = saying.text.strip()  # the voice failed, but the user may read the text
             except asyncio.CancelledError:
                 saying.heard = mouth.heard(saying.text)

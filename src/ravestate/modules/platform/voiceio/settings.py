@@ -9,7 +9,7 @@ from pydantic import ConfigDict, Field
 
 import ravestate as rs
 
-Seconds = Annotated[float, Field(ge=0)]
+Seconds = Annotated[float, Field(ge=0, allow_inf_nan=False)]
 Share = Annotated[float, Field(ge=0, le=1)]
 
 
@@ -36,7 +36,7 @@ class Settings(rs.Settings):
     """The user's language; empty to detect it in each utterance."""
     threads: Annotated[int, Field(ge=0)] = 0
     """CPU threads of the recogniser; 0 takes up to four."""
-    recogniser_timeout: Annotated[float, Field(gt=0)] = 20.0
+    recogniser_timeout: Annotated[float, Field(gt=0, le=3600)] = 20.0
     """The time limit for recognising up to 25 s of sound (seconds). A slower recogniser counts as stuck, and is started
     again."""
     captions: Seconds = 1.0
@@ -49,7 +49,7 @@ class Settings(rs.Settings):
 
     speech: Share = 0.5
     """The minimum probability of speech for a sound to count as speech."""
-    pause: Annotated[float, Field(ge=0.1)] = 0.2
+    pause: Annotated[float, Field(ge=0.1, allow_inf_nan=False)] = 0.2
     """This many seconds of silence are a pause, and end a turn whose words and melody are complete."""
     doubtful_pause: Seconds = 1.2
     """This many seconds of silence end a turn that may be incomplete."""
