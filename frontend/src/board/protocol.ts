@@ -21,6 +21,7 @@ export const LOSSES = {
   resigned: "the rule resigned",
   eliminated: "its patience ran out while others waited",
   withdrawn: "the spike was withdrawn",
+  doubled: "another attempt of the rule holds it",
   retired: "the rule retired",
 };
 

@@ -11,6 +11,7 @@ from ravestate.engine import trace
 from ravestate.engine.activation import (
     COMPLETE,
     END,
+    ENDED,
     GATHERING,
     LOSE,
     NEVER,
@@ -253,7 +254,34 @@ class Holdings:
         for need in (*needs, *(n for n in clause.needs if n.bit & kin)):
             if need.bit & activation.missing:
                 self._rematch(activation, need)
-        self.update(activation)
+        twins = self._twins(activation)
+        youngest = max([activation, *twins], key=by_age)
+        if len(twins) > 1:
+            self.end(youngest, "doubled")
+        if activation.state != ENDED:
+            self.update(activation)
+
+    def _twins(self, activation: Activation) -> list[Activation]:
+        """Return the other incomplete activations of the clause with the same spikes and the same patience.
+
+        Every further spike comes to all of them, but only one may consume their spikes. While that one waits or runs,
+        another one stands for the clause in the questions of rivals (L16). All others are superfluous. If a clause never
+        got its last spike, they would pass on from spike to spike, and become ever more (L23).
+        """
+        if not activation.clause.firm_bits:
+            return []  # nothing is consumed, so all may run
+        spikes, lacking = activation.spikes, self.state.lacking
+        needs = zip(activation.clause.needs, spikes, strict=True)
+        found = [lacking[need] if spike is None else spike.holders for need, spike in needs]
+        return [
+            other
+            for other in min(found, key=len)
+            if other is not activation
+            and other.state == GATHERING
+            and other.clause is activation.clause
+            and other.spikes == spikes
+            and other.patience_ends == activation.patience_ends
+        ]
 
     def lose_group(self, activation: Activation, group: Group, reason: str, by: Activation | None = None) -> None:
         """Make an activation give up its non-detached spikes of a group."""

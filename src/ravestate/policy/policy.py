@@ -32,7 +32,7 @@ class Policy(Plans):
         Raises:
             DeclarationError: The policy has no such rule.
         """
-        name = rule if isinstance(rule, str) else rule.name
+        name = rule if isinstance(rule, str) else str(getattr(rule, "name", rule))
         found = self.plan_of.get(name)
         if found is None:
             raise DeclarationError(f"the policy has no rule {name!r}{nearest(name, self.rules)}")

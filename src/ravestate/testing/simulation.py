@@ -5,6 +5,7 @@ from __future__ import annotations
 import asyncio
 from collections import deque
 from collections.abc import Callable, Mapping
+from math import isfinite
 from pathlib import Path
 from types import ModuleType
 from typing import Any, TypeVar
@@ -178,6 +179,8 @@ class Simulation:
         """Let `seconds` of virtual time pass. Do everything that is due now, meanwhile, and at the end."""
         if seconds < 0:
             raise ValueError(f"advance({seconds!r}): time does not run backwards")
+        if not isfinite(seconds):
+            raise ValueError(f"advance({seconds!r}): write a finite number of seconds")
         loop = self._running()
         self.settle()
         loop.run_to(loop.time() + seconds)
@@ -219,6 +222,8 @@ class Simulation:
     def _running(self) -> VirtualLoop:
         if self._loop is None:
             raise EngineError("the simulation has not started: write `with simulate(...) as sim:`")
+        if self._loop.is_closed():
+            raise EngineError("the simulation has ended: act on it inside its `with` block")
         return self._loop
 
 
