@@ -54,6 +54,14 @@ def test_a_question_is_answered_with_its_source(settings: dict[str, dict[str, An
         assert "genqa:say" in sim.fired
 
 
+def test_a_fragment_asks_for_the_kind_of_the_question_that_it_completes(settings: dict[str, dict[str, Any]]) -> None:
+    """*And in Mali?* alone asks for a place; after *how many* it asks for an amount."""
+    with simulate(genqa, talk, settings=settings) as sim:
+        for text in ("What is the capital of Chad?", "How many people live in Chad?", "And in Mali?"):
+            sim.say(text)
+        assert "The population of Mali is" in sim.said[-1]
+
+
 def test_the_sample_conversation_of_the_paper_is_reproduced(settings: dict[str, dict[str, Any]]) -> None:
     """*Will it rain?* is small talk; *when did it start to rain?* asks for a fact."""
     with simulate(genqa, talk, settings=settings) as sim:
