@@ -93,6 +93,13 @@ def test_a_hobby_is_confirmed_by_its_noun_alone(file: Path) -> None:
         assert meant(answers(sim, "do I like football?"), "deny")
 
 
+def test_what_others_say_about_the_user_is_no_fact(file: Path) -> None:
+    with agent(file) as sim:
+        sim.say("people say I am from Spain")
+        sim.say("Facebook says I'm 52")
+        assert dict(sim.read(persqa.facts)) == {}
+
+
 def test_a_birthplace_is_an_answer_to_where_are_you_from(file: Path) -> None:
     with agent(file, topics=["origin"]) as sim:
         assert asked(sim) == "origin"

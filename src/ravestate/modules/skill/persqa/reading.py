@@ -39,6 +39,7 @@ _PARTLY = re.compile(r"(?:n['’]t|\bnot) (?:just|only|merely|simply)\b|\bbecaus
 _SPEAKING = frozenset(("speak", "talk", "call", "be"))
 _NAMING = frozenset(("call", "name", "christen", "baptise", "dub", "say", "use", "prefer", "be"))
 """Verbs with which users say their own name: *Ada speaking*, *just say Kim*."""
+_REPORTING = frozenset(("say", "tell", "claim", "think", "believe"))
 _OTHERS = frozenset(("it", "him", "her", "them"))
 _PRONOUN = re.compile(r"\b(?:he|she|his|her|hers|him|its?)\b", re.IGNORECASE)
 
@@ -92,7 +93,7 @@ class Reader:
             and not self._is_contrasted(tag)
             and not (tag.negated and ((NOW - {"now"}) & self.words or _PARTLY.search(text)))  # "I'm not just a nurse"
             and (context or tag.text != text.strip(" .!?"))  # a bare word, such as "Hannover.", needs a question
-            and not (self._describes_work(tag) or self._is_over(tag) or self._is_anothers(tag))
+            and not (self._describes_work(tag) or self._is_over(tag) or self._is_hearsay(tag) or self._is_anothers(tag))
         )
 
     def facts(self) -> list[Fact]:
@@ -194,6 +195,15 @@ class Reader:
             ):
                 return not said.negated
         return False
+
+    def _is_hearsay(self, tag: Tag) -> bool:
+        """Return whether others say a value of the user: *people say I am from Spain*."""
+        if tag.label == NAME or not any(
+            one.verb in _REPORTING for one in self.seen.statements if one.subject.person != "I"
+        ):
+            return False
+        mine = (said for said in self.seen.statements if said.hearsay and said.subject.person == "I")
+        return any(tag.text in self.span(said) for said in mine)
 
     def _is_contrasted(self, tag: Tag) -> bool:
         """Return whether a value replaces a known one, so that the known one shows the topic: *not Leeds but Leipzig*."""
