@@ -100,6 +100,12 @@ def test_what_others_say_about_the_user_is_no_fact(file: Path) -> None:
         assert dict(sim.read(persqa.facts)) == {}
 
 
+def test_a_clear_value_stays_beside_a_doubtful_one_of_the_same_topic(file: Path) -> None:
+    with agent(file) as sim:
+        sim.say("I grew up in Cairo and studied physics in Delft")
+        assert sim.read(persqa.facts)["childhood"] == ("Cairo",)
+
+
 def test_a_birthplace_is_an_answer_to_where_are_you_from(file: Path) -> None:
     with agent(file, topics=["origin"]) as sim:
         assert asked(sim) == "origin"

@@ -36,6 +36,8 @@ PEOPLE = frozenset(topic.name for topic in TOPICS.values() if topic.kind in ("pe
 _UNUSUAL = re.compile(r"[^\w\s.,;:!?'’\"-]")
 """Characters that no word of English has. The network has not learnt them."""
 _PARTLY = re.compile(r"(?:n['’]t|\bnot) (?:just|only|merely|simply)\b|\bbecause\b", re.IGNORECASE)
+_JOINED = re.compile(r"[^.!?]*\band\b[^.!?]*", re.IGNORECASE)
+"""The words between two values that do not correct each other."""
 _SPEAKING = frozenset(("speak", "talk", "call", "be"))
 _NAMING = frozenset(("call", "name", "christen", "baptise", "dub", "say", "use", "prefer", "be"))
 """Verbs with which users say their own name: *Ada speaking*, *just say Kim*."""
@@ -99,6 +101,7 @@ class Reader:
     def facts(self) -> list[Fact]:
         """Return the facts that the user states or denies."""
         told: dict[str, tuple[str, ...]] = {}
+        clear: dict[str, int] = {}  # the ends of clear values: "I grew up in Cairo and studied physics in Delft"
         gone = self._ended()
         for tag in self.tags:
             topic = self._topic(tag)
@@ -107,7 +110,10 @@ class Reader:
                 known = self.known.get(topic, ())
                 fits = alike if TOPICS[topic].kind == "activity" else among
                 gone[topic] = gone.get(topic, ()) + (tuple(one for one in known if fits(one, (value,))) or (value,))
-            elif value:
+            elif value and (
+                tag.score >= CLEAR or not _JOINED.fullmatch(self.tree.text[clear.get(topic, tag.start) : tag.start])
+            ):
+                clear |= {topic: tag.end} if tag.score >= CLEAR and not TOPICS[topic].many else {}
                 for other, values in self.known.items():  # "Rex is a dog", if Rex was taken for a cat
                     both = {TOPICS[other].type, TOPICS[topic].type} == {"Animal"} and other != topic
                     gone |= {other: (value,)} if both and among(value, values) else {}
