@@ -17,7 +17,7 @@ A step that is not in the table of transitions is a bug in the engine.
 from __future__ import annotations
 
 import enum
-from typing import TYPE_CHECKING, Final
+from typing import TYPE_CHECKING, Any, Final
 
 from ravestate.engine.group import NOTHING
 from ravestate.errors import EngineError

@@ -64,7 +64,7 @@ class Chat:
         self._hearing: Entry | None = None  # the message that the agent is about to hear
         self._open: list[Entry] = []  # messages that the agent has heard, and may still answer
         self._said: list[Answer] = []  # answers that are not in the store yet
-        self._repeated: Counter[str] = Counter()  # answers from before a crash, which the store has kept
+        self._repeated: Counter[object] = Counter()  # answers from before a crash, which the store has kept
         self._draft = Draft(id)
         self._state: Literal["open", "leaving", "gone"] = "open"
         self._mute = False  # whether the agent's words are dropped
@@ -121,6 +121,7 @@ class Chat:
         first = self._waiting[0]
         # If the process dies, the next process hears the same message with the same random choices.
         context = self._room.agent.context(seed=zlib.crc32(f"{self.id} {first.message.key}".encode()))
+        self._repeated.update(_content(None, said) for said in self._room.store.alone(self.id))
         async with context:
             self.context, self._mute = context, False
             context.put(self._room.slot, self)
@@ -189,30 +190,29 @@ class Chat:
     async def _hear(self, entry: Entry) -> None:
         context, message = self.context, entry.message
         assert context is not None  # the conversation runs
-        for answer in self._room.store.recorded(entry.n):
-            self._repeated[answer.text] += 1
-        new = await self._meet(context, message.person)
+        self._repeated.update(_content(entry.n, said) for said in self._room.store.recorded(entry.n))
+        new = await self._meet(context, entry)
         kind = message.kind
         if kind == "command" and message.text in COMMANDS:
             await self._obey(context, entry, new)
         elif kind == "reaction":
-            context.emit(rawio.reaction, message.text)
+            context.emit(rawio.reaction, message.text, origin=entry)
         elif kind in ("picture", "voice"):
             await self._open_file(context, entry)
         elif kind == "edit" and self._room.store.answer_to(entry) is None:
             pass  # the edited message was not the last one: ignore the edit
         elif message.text.strip():
-            context.put(rawio.input, printable(message.text))
+            context.put(rawio.input, printable(message.text), origin=entry)
 
-    async def _meet(self, context: Context, person: Person) -> bool:
-        """Add a person to the present users. Return whether they were absent, and are new to the agent in this chat."""
-        name = self._room.name
+    async def _meet(self, context: Context, entry: Entry) -> bool:
+        """Add a message's sender to the present users. Return whether they were absent, and are new in this chat."""
+        name, person = self._room.name, entry.message.person
         if people.present(context, name, person):
             return False
         new = not self._room.store.knows(self.id, person)
         # Greet nobody twice: mute the greeting. This would also mute answers to others, so wait for the answers first.
         self._mute = not new and await self._answered(FAREWELL)
-        await people.welcome(context, name, person, self._room.log)
+        await people.welcome(context, name, person, self._room.log, entry)
         with contextlib.suppress(TimeoutError):
             async with asyncio.timeout(FAREWELL):
                 await context.quiet()
@@ -235,18 +235,18 @@ class Chat:
             if reply == FORGOTTEN:
                 self._mute = True
                 self._keep_for_later(message.person)
-            self._leave_soon(context, message.person, forgotten=reply == FORGOTTEN)
+            self._leave_soon(context, entry, forgotten=reply == FORGOTTEN)
         elif message.text == "stop":
-            self._leave_soon(context, message.person)
+            self._leave_soon(context, entry)
             with contextlib.suppress(TimeoutError):
                 async with asyncio.timeout(FAREWELL):
                     await context.quiet()
         elif not (message.text == "start" and new and self._spoken):
             command = Command(message.text, explanation(context.read(interloc.agent)))
-            context.emit(self._room.command, command)
+            context.emit(self._room.command, command, origin=entry)
 
-    def _leave_soon(self, context: Context, person: Person, forgotten: bool = False) -> None:
-        people.leave(context, people.key(self._room.name, person))
+    def _leave_soon(self, context: Context, entry: Entry, forgotten: bool = False) -> None:
+        people.leave(context, people.key(self._room.name, entry.message.person), entry)
         if not context.read(interloc.users) or forgotten:
             self.rest()
 
@@ -271,7 +271,7 @@ class Chat:
             self._reply(UNSEEN)
             return
         if message.kind == "picture":
-            context.put(rawio.picture, data)
+            context.put(rawio.picture, data, origin=entry)
             text = message.text
         else:
             try:
@@ -283,14 +283,15 @@ class Chat:
             if not text.strip():
                 self._reply(UNCLEAR)
         if text.strip():
-            context.put(rawio.input, printable(text))
+            context.put(rawio.input, printable(text), origin=entry)
 
     # ------------------------------------------------------------------------------------ from the agent
 
-    def utter(self, text: str) -> None:
-        """Send a whole utterance of the agent to the chat."""
-        self._draft.text = ""
-        self._speak(printable(text).strip(), self._cause())
+    def utter(self, text: str, origin: object = None) -> None:
+        """Send a whole utterance of the agent to the chat. `origin` is the ``ctx.origin`` of a rule for the utterance."""
+        cause = _cause(origin)
+        self._draft.take(cause)
+        self._speak(printable(text).strip(), cause)
 
     def _reply(self, text: str) -> None:
         """Answer the message that the agent is about to hear, without a rule."""
@@ -301,27 +302,28 @@ class Chat:
             return
         emoji = self._room.carrier.can_react(text) and cause is not None
         for n, part in enumerate([text] if emoji else split(text, self._room.carrier.longest)):
-            if self._repeated[part] > 0:  # the process died after this answer
-                self._repeated[part] -= 1
-            else:
-                self._say(Outgoing(key="", chat=self.id, text=part), cause, emoji=emoji, first=n == 0)
+            self._say(Outgoing(key="", chat=self.id, text=part), cause, emoji=emoji, first=n == 0)
 
-    def send_picture(self, data: bytes, caption: str = "") -> None:
-        """Send a picture (the bytes of a JPEG or PNG file) to the chat."""
+    def send_picture(self, data: bytes, caption: str = "", *, origin: object = None) -> None:
+        """Send a picture (the bytes of a JPEG or PNG file) to the chat.
+
+        Args:
+            data: The picture.
+            caption: The words below the picture.
+            origin: The rule's ``ctx.origin``, if the picture is the answer to a message.
+        """
         if not self._silent:
-            self._say(Outgoing(key="", chat=self.id, kind="picture", text=caption, data=data), self._cause())
+            self._say(Outgoing(key="", chat=self.id, kind="picture", text=caption, data=data), _cause(origin))
 
     @property
     def _silent(self) -> bool:
         return self._mute or self._state == "gone"
 
-    def _cause(self) -> Entry | None:
-        """Return the message that the agent answers now: the oldest message without an answer (law L12)."""
-        answered = {answer.cause for answer in self._said}
-        waiting = (entry for entry in self._open if entry.n not in answered)
-        return next(waiting, None) or self._hearing or (self._open[-1] if self._open else None)
-
     def _say(self, message: Outgoing, cause: Entry | None, *, emoji: bool = False, first: bool = True) -> None:
+        content = _content(None if cause is None else cause.n, message)
+        if self._repeated[content] > 0:  # the process died after this answer
+            self._repeated[content] -= 1
+            return
         if cause is not None:
             heard = cause.message
             if emoji:
@@ -338,14 +340,13 @@ class Chat:
         if self._flush is None:
             self._flush = asyncio.get_running_loop().call_later(GRACE if self._following else 0.0, self._flush_said)
 
-    def grow(self, piece: str) -> None:
+    def grow(self, piece: str, origin: object = None) -> None:
         """Add a piece to the growing utterance. The utterance becomes a message when it is complete."""
-        self._draft.grow(piece)
+        self._draft.grow(piece, _cause(origin))
 
-    def fall_silent(self) -> None:
+    def fall_silent(self, origin: object = None) -> None:
         """Send the growing utterance as it is, if no rule has written it as a whole."""
-        if self._draft.text:
-            self.utter(self._draft.text)
+        self.utter(self._draft.take(_cause(origin)), origin)
 
     # ------------------------------------------------------------------------------------ to the store
 
@@ -391,5 +392,15 @@ class Chat:
             self._room.sender.wake(self.id)
         self._said = []
         self._open = [entry for entry in self._open if entry not in done]
-        if not self._open and self._hearing is None:
+        if not self.busy:
             self._repeated.clear()
+
+
+def _cause(origin: object) -> Entry | None:
+    """Return the message that an output answers; None if the agent speaks on its own initiative."""
+    return origin if isinstance(origin, Entry) else None
+
+
+def _content(cause: int | None, message: Outgoing) -> object:
+    """Return the part of a message by which the chat recognises it if the agent repeats it after a crash."""
+    return cause, message.text, message.data
