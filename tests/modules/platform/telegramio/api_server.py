@@ -240,6 +240,14 @@ class Server:
         await self.tell()
         return message
 
+    async def deleteMessage(self, bot: str, a: dict[str, Any]) -> Any:
+        which = bot, int(a["chat_id"]), int(a["message_id"])
+        deleted = self.db.execute("DELETE FROM messages WHERE bot = ? AND chat = ? AND id = ? AND own", which)
+        if not deleted.rowcount:
+            raise Refusal(400, "Bad Request: message to delete not found")
+        await self.tell()
+        return True
+
     async def editMessageReplyMarkup(self, bot: str, a: dict[str, Any]) -> Any:
         self.own(bot, int(a["chat_id"]), int(a["message_id"]))
         raise Refusal(

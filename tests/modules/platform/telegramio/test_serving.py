@@ -156,6 +156,26 @@ async def test_editing_the_last_message_changes_its_answer(bot: Bot, tmp_path: P
 
 
 @live
+async def test_editing_the_last_message_changes_or_deletes_each_part_of_its_answer(bot: Bot, tmp_path: Path) -> None:
+    wordy = rs.Module("wordy", requires=(rawio,))
+
+    @wordy.rule(when=rawio.input.changed, writes=rawio.output)
+    async def tell(ctx: rs.RuleContext) -> None:
+        for word in ctx.payload(rawio.input.changed).split():
+            ctx[rawio.output] = word
+
+    async with running(bot, tmp_path, wordy):
+        message = await bot.say(7, "one two three")
+        await bot.said(3)
+        await bot.do("fault", method="deleteMessage", kind="lost")  # the second attempt finds no message
+        await bot.do("edit", chat=7, id=message["message_id"], text="four five")
+        await bot.do("called", method="deleteMessage", count=2)
+        assert await bot.said(2) == ["7: four", "7: five"]
+        await bot.do("edit", chat=7, id=message["message_id"], text="six seven eight")
+        assert await bot.said(3) == ["7: six", "7: seven", "7: eight"]
+
+
+@live
 async def test_in_a_group_the_agent_answers_only_messages_that_address_it(bot: Bot, tmp_path: Path) -> None:
     async with running(bot, tmp_path):
         await bot.say(-5, "Hello all", user=7)

@@ -65,6 +65,7 @@ class Chat:
         self._open: list[Entry] = []  # messages that the agent has heard, and may still answer
         self._said: list[Answer] = []  # answers that are not in the store yet
         self._repeated: Counter[object] = Counter()  # answers from before a crash, which the store has kept
+        self._replaceable: dict[int, list[str]] = {}  # for each edit: the earlier answers that it has not replaced
         self._draft = Draft(id)
         self._state: Literal["open", "leaving", "gone"] = "open"
         self._mute = False  # whether the agent's words are dropped
@@ -155,6 +156,7 @@ class Chat:
         self._hearing = None
         self._open = []
         self._repeated.clear()
+        self._replaceable.clear()
 
     async def _hear_all(self) -> None:
         while self._state == "open":
@@ -199,10 +201,22 @@ class Chat:
             context.emit(rawio.reaction, message.text, origin=entry)
         elif kind in ("picture", "voice"):
             await self._open_file(context, entry)
-        elif kind == "edit" and self._room.store.answer_to(entry) is None:
+        elif kind == "edit" and not self._can_edit(entry):
             pass  # the edited message was not the last one: ignore the edit
         elif message.text.strip():
             context.put(rawio.input, printable(message.text), origin=entry)
+
+    def _can_edit(self, edit: Entry) -> bool:
+        """Note the answers that an edit will replace. Return whether the edited message is the last one."""
+        old = self._room.store.answers_to(edit)
+        if old is None:
+            return False
+        for entry in self._open:
+            if entry.message.id == edit.message.id:  # of several edits, the last one replaces the answers
+                self._replaceable.pop(entry.n, None)
+        replaced = [each.to for each in self._room.store.recorded(edit.n) if each.kind == "edit"]
+        self._replaceable[edit.n] = [answer for answer in old if answer not in replaced]
+        return True
 
     async def _meet(self, context: Context, entry: Entry) -> bool:
         """Add a message's sender to the present users. Return whether they were absent, and are new in this chat."""
@@ -328,15 +342,13 @@ class Chat:
             heard = cause.message
             if emoji:
                 message = replace(message, kind="reaction", to=heard.id)
-            elif message.kind == "text" and heard.kind == "edit" and first:
-                if answer := self._room.store.answer_to(cause):
-                    message = replace(message, kind="edit", to=answer)
+            elif message.kind == "text" and (old := self._replaceable.get(cause.n)):
+                message = replace(message, kind="edit", to=old.pop(0))
             elif heard.kind == "voice" and message.kind == "text":
                 message = replace(message, kind="voice", to=heard.id)
             elif first and heard.kind != "reaction" and (heard.group or len(self._open) > 1):
                 message = replace(message, to=heard.id)
-        key = secrets.token_hex(12)
-        self._said.append(Answer(replace(message, key=key), None if cause is None else cause.n))
+        self._said.append(_answer(message, None if cause is None else cause.n))
         if self._flush is None:
             self._flush = asyncio.get_running_loop().call_later(GRACE if self._following else 0.0, self._flush_said)
 
@@ -371,6 +383,13 @@ class Chat:
                 self._following = None
         self._room.make_room()
 
+    def _deletions(self, entry: Entry) -> list[Answer]:
+        """Return the orders to delete the earlier answers that an edit has not replaced, if it has any answer."""
+        left = self._replaceable.get(entry.n)
+        if not left or not (any(each.cause == entry.n for each in self._said) or self._room.store.recorded(entry.n)):
+            return []
+        return [_answer(Outgoing(key="", chat=self.id, kind="delete", to=id), entry.n) for id in left]
+
     def _flush_said(self, attempt: int = 0) -> None:
         """Store the answers now, even if the agent is still working. If the file cannot be written, try again later."""
         self._flush = None
@@ -386,14 +405,21 @@ class Chat:
             self._flush.cancel()
             self._flush = None
         done = [entry for entry in self._open if entry in done]
-        if self._said or done:
-            self._room.store.commit(self._said, done)
-        if self._said:
+        said = [*self._said, *(answer for entry in done for answer in self._deletions(entry))]
+        if said or done:
+            self._room.store.commit(said, done)
+        if said:
             self._room.sender.wake(self.id)
         self._said = []
+        for entry in done:
+            self._replaceable.pop(entry.n, None)
         self._open = [entry for entry in self._open if entry not in done]
         if not self.busy:
             self._repeated.clear()
+
+
+def _answer(message: Outgoing, cause: int | None) -> Answer:
+    return Answer(replace(message, key=secrets.token_hex(12)), cause)
 
 
 def _cause(origin: object) -> Entry | None:

@@ -47,9 +47,9 @@ class Incoming:
     aliases: tuple[str, ...] = ()
 
 
-Sent = Literal["text", "picture", "voice", "edit", "reaction"]
+Sent = Literal["text", "picture", "voice", "edit", "delete", "reaction"]
 """The kinds of outgoing messages. A carrier gets a ``voice`` message with its sound, or as ``text`` if there is no
-sound."""
+sound. It gets an ``edit`` or a ``delete`` only after an incoming ``edit``."""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -61,7 +61,7 @@ class Outgoing:
         chat: The id of the chat.
         kind: The kind of the message.
         text: The words, the caption of a picture, or the emoji of a reaction.
-        to: The id of the message to edit, to react to or to reply to; empty if there is none.
+        to: The id of the message to edit, to delete, to react to or to reply to; empty if there is none.
         data: The bytes of a picture, or of a voice note (Ogg with Opus).
         trace: The text that `Carrier.trace` returned before the first attempt; empty if there is none.
     """
@@ -114,7 +114,7 @@ class Carrier(Protocol):
     """The maximum number of messages per second, over all chats."""
 
     async def send(self, message: Outgoing, again: bool) -> str:
-        """Send a message, and return its id on the messenger.
+        """Send a message, and return its id on the messenger. For an ``edit``, this is the id for the next edit.
 
         Args:
             message: The message.

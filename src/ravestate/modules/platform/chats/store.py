@@ -188,17 +188,17 @@ class Store:
             for entry in entries:
                 self._db.execute("UPDATE inbox SET tries = tries - 1 WHERE n = ?", (entry.n,))
 
-    def answer_to(self, edit: Entry) -> str | None:
-        """Return the id of the answer to the edited message; an empty text if there is no answer yet.
+    def answers_to(self, edit: Entry) -> list[str] | None:
+        """Return the ids of the answers to the edited message, which are texts; an empty list if there are none yet.
 
         If the edited message was not the last message of its chat, return None.
         """
         chat, id = edit.message.chat, edit.message.id
-        query = "SELECT id, answer FROM inbox WHERE chat = ? AND n < ? AND id IS NOT NULL ORDER BY n DESC LIMIT 20"
-        rows = self._all(query, chat, edit.n)
-        if not rows or rows[0][0] != id:
+        query = "SELECT id FROM inbox WHERE chat = ? AND n < ? AND id IS NOT NULL ORDER BY n DESC LIMIT 1"
+        if self._all(query, chat, edit.n) != [(id,)]:
             return None
-        return next((answer for found, answer in rows if found == id and answer), "")
+        query = "SELECT answer FROM inbox WHERE chat = ? AND id = ? AND n < ? ORDER BY n"
+        return [answer for (answers,) in self._all(query, chat, id, edit.n) for answer in answers.split("\n") if answer]
 
     # ------------------------------------------------------------------------------------ messages to deliver
 
@@ -272,11 +272,19 @@ class Store:
     def sent(self, item: Item, id: str) -> None:
         """Note that a message has been delivered, and has this id on the messenger."""
         with self._transaction():
-            if item.message.kind in ("text", "voice", "edit"):
-                cause = "SELECT cause FROM outbox WHERE n = ?"
-                self._db.execute(f"UPDATE inbox SET answer = ? WHERE n = ({cause}) AND answer = ''", (id, item.n))
-            self._db.execute("UPDATE outbox SET state = 'sent' WHERE n = ?", (item.n,))
-            self._tidy("?", item.message.chat)
+            message = item.message
+            cause = "(SELECT cause FROM outbox WHERE n = ?)"
+            if message.kind in ("text", "voice"):
+                self._db.execute(f"UPDATE inbox SET answer = answer || ? WHERE n = {cause}", (f"\n{id}", item.n))
+            elif message.kind in ("edit", "delete"):
+                new = [id] if message.kind == "edit" else []  # after a failed edit, the answer is a new message
+                same = f"chat = ? AND id = (SELECT id FROM inbox WHERE n = {cause})"
+                for n, answers in self._all(f"SELECT n, answer FROM inbox WHERE {same}", message.chat, item.n):
+                    lines = [each for line in answers.split("\n") for each in (new if line == message.to else [line])]
+                    self._db.execute("UPDATE inbox SET answer = ? WHERE n = ?", ("\n".join(lines), n))
+                message = replace(message, to=id)
+            self._db.execute("UPDATE outbox SET state = 'sent', message = ? WHERE n = ?", (_json(message), item.n))
+            self._tidy("?", message.chat)
 
     def drop(self, item: Item) -> None:
         """Delete an outgoing message."""

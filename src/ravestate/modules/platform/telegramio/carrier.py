@@ -85,6 +85,13 @@ class TelegramCarrier:
             except BadRequest as error:
                 if "not modified" in error.message:
                     return int(message.to)
+        if message.kind == "delete":
+            try:
+                await bot.delete_message(chat, int(message.to))
+            except BadRequest as error:
+                if "not found" not in error.message:
+                    raise
+            return int(message.to)
         reply = None
         if message.to and message.kind != "edit":
             reply = ReplyParameters(int(message.to), allow_sending_without_reply=True)
