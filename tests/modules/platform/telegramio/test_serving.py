@@ -304,6 +304,25 @@ async def test_a_long_answer_is_sent_in_several_messages(bot: Bot, tmp_path: Pat
 
 
 @live
+async def test_the_words_that_do_not_fit_below_a_picture_follow_in_messages(bot: Bot, tmp_path: Path) -> None:
+    tale = " ".join(f"Sentence {n} ends." for n in range(400))
+    painter = rs.Module("painter", requires=(rawio,))
+
+    @painter.rule(when=rawio.input.changed, reads=telegramio.chat)
+    async def paint(ctx: rs.RuleContext) -> None:
+        ctx[telegramio.chat].send_picture(b"\x89PNG", tale, origin=ctx.origin)
+
+    async with running(bot, tmp_path, painter):
+        wish = await bot.say(-5, "Paint, Robin!", user=7)
+        said = await bot.said(3)
+        assert " ".join(each.removeprefix("-5: ") for each in said) == tale
+        [picture, *words] = await bot.do("said", count=3)
+        assert len(picture["caption"]) > 1000
+        assert picture["reply_to_message"]["message_id"] == wish["message_id"]
+        assert not any("reply_to_message" in each for each in words)
+
+
+@live
 async def test_the_agent_answers_only_people_in_the_setting_allow(bot: Bot, tmp_path: Path) -> None:
     async with running(bot, tmp_path, allow=(7, "@User8", 99)):
         for chat in (9, 8, 7):

@@ -315,7 +315,7 @@ class Chat:
         if not text or self._silent:
             return
         emoji = self._room.carrier.can_react(text) and cause is not None
-        for n, part in enumerate([text] if emoji else split(text, self._room.carrier.longest)):
+        for n, part in enumerate([text] if emoji else split(text, self._longest(cause))):
             self._say(Outgoing(key="", chat=self.id, text=part), cause, emoji=emoji, first=n == 0)
 
     def send_picture(self, data: bytes, caption: str = "", *, origin: object = None) -> None:
@@ -326,8 +326,18 @@ class Chat:
             caption: The words below the picture.
             origin: The rule's ``ctx.origin``, if the picture is the answer to a message.
         """
-        if not self._silent:
-            self._say(Outgoing(key="", chat=self.id, kind="picture", text=caption, data=data), _cause(origin))
+        if self._silent:
+            return
+        cause = _cause(origin)
+        words = split(caption, self._longest(cause), first=self._room.carrier.longest_caption) or [""]
+        self._say(Outgoing(key="", chat=self.id, kind="picture", text=words[0], data=data), cause)
+        for part in words[1:]:
+            self._say(Outgoing(key="", chat=self.id, text=part), cause, first=False)
+
+    def _longest(self, cause: Entry | None) -> int:
+        """Return the maximum number of characters in a message that answers `cause`. Voice is answered by voice."""
+        carrier = self._room.carrier
+        return carrier.longest_caption if cause is not None and cause.message.kind == "voice" else carrier.longest
 
     @property
     def _silent(self) -> bool:

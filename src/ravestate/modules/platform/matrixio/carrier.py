@@ -28,7 +28,7 @@ WRITING = 5000  # a room shows for this many milliseconds that the agent is writ
 class MatrixCarrier:
     """Sends messages from an account; see `Carrier`. A homeserver ignores a message whose id it knows."""
 
-    longest = 16_000  # the limit of an event is 64 kB
+    longest = longest_caption = 16_000  # the limit of an event is 64 kB
     rate = 50.0
 
     def __init__(self, client: AsyncClient) -> None:

@@ -38,6 +38,7 @@ class TelegramCarrier:
     """
 
     longest: int = MessageLimit.MAX_TEXT_LENGTH
+    longest_caption: int = MessageLimit.CAPTION_LENGTH
 
     def __init__(self, bot: Bot, rate: float, drafts: bool) -> None:
         self._bot = bot
@@ -95,11 +96,10 @@ class TelegramCarrier:
         reply = None
         if message.to and message.kind != "edit":
             reply = ReplyParameters(int(message.to), allow_sending_without_reply=True)
-        caption = text[: MessageLimit.CAPTION_LENGTH]
         if message.kind == "picture":
-            return (await bot.send_photo(chat, message.data, caption=caption, reply_parameters=reply)).message_id
+            return (await bot.send_photo(chat, message.data, caption=text, reply_parameters=reply)).message_id
         if message.kind == "voice":
-            return (await bot.send_voice(chat, message.data, caption=caption, reply_parameters=reply)).message_id
+            return (await bot.send_voice(chat, message.data, caption=text, reply_parameters=reply)).message_id
         return (await bot.send_message(chat, text, reply_parameters=reply)).message_id
 
     async def _find(self, message: Outgoing) -> str | None:
