@@ -323,6 +323,22 @@ async def test_the_words_that_do_not_fit_below_a_picture_follow_in_messages(bot:
 
 
 @live
+async def test_all_parts_of_an_answer_go_to_the_topic_of_their_message(bot: Bot, tmp_path: Path) -> None:
+    painter = rs.Module("painter", requires=(rawio,))
+
+    @painter.rule(when=rawio.input.changed, reads=telegramio.chat, writes=rawio.output)
+    async def paint(ctx: rs.RuleContext) -> None:
+        ctx[rawio.output] = "words " * 1000
+        ctx[telegramio.chat].send_picture(b"\x89PNG", "a house", origin=ctx.origin)
+
+    async with running(bot, tmp_path, painter):
+        await bot.say(-(10**12) - 5, "Paint, Robin!", user=7, message_thread_id=3, is_topic_message=True)
+        assert [each.get("message_thread_id") for each in await bot.do("said", count=3)] == [3, 3, 3]
+        await bot.say(-(10**12) - 5, "Paint, Robin!", user=7, message_thread_id=4)  # a thread of replies is no topic
+        assert [each.get("message_thread_id") for each in (await bot.do("said", count=6))[3:]] == [None] * 3
+
+
+@live
 async def test_the_agent_answers_only_people_in_the_setting_allow(bot: Bot, tmp_path: Path) -> None:
     async with running(bot, tmp_path, allow=(7, "@User8", 99)):
         for chat in (9, 8, 7):

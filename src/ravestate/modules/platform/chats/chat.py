@@ -350,6 +350,7 @@ class Chat:
             return
         if cause is not None:
             heard = cause.message
+            message = replace(message, topic=heard.topic)
             if emoji:
                 message = replace(message, kind="reaction", to=heard.id)
             elif message.kind == "text" and (old := self._replaceable.get(cause.n)):

@@ -33,6 +33,7 @@ class Incoming:
         text: The words, the caption of a picture, the emoji of a reaction, or a command's name without a slash.
         file: The reference with which `Carrier.fetch` gets a picture or a voice note.
         group: Whether several people may be in the chat.
+        topic: The id of the message's topic, if the messenger divides the chat into topics; else empty.
         aliases: Other names of the sender and of the chat, for the setting `allow`.
     """
 
@@ -44,6 +45,7 @@ class Incoming:
     text: str = ""
     file: str = ""
     group: bool = False
+    topic: str = ""
     aliases: tuple[str, ...] = ()
 
 
@@ -62,6 +64,7 @@ class Outgoing:
         kind: The kind of the message.
         text: The words, the caption of a picture, or the emoji of a reaction.
         to: The id of the message to edit, to delete, to react to or to reply to; empty if there is none.
+        topic: The topic of the message that this one answers; empty if it has none.
         data: The bytes of a picture, or of a voice note (Ogg with Opus).
         trace: The text that `Carrier.trace` returned before the first attempt; empty if there is none.
     """
@@ -71,6 +74,7 @@ class Outgoing:
     kind: Sent = "text"
     text: str = ""
     to: str = ""
+    topic: str = ""
     data: bytes = b""
     trace: str = ""
 
