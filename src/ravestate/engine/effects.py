@@ -20,7 +20,7 @@ class Run:
         rule: The rule whose function to call.
         payloads: Key: the qualified name of a signal whose spike the run holds; value: the spike's payload.
         values: Key: the qualified name of a slot that the run may read; value: the slot's current value (law L13).
-        origin: What code outside the rules passed with the event that led to the run; None if it passed nothing.
+        origin: The object that came from outside with the event that led to the run; None if there was no object.
     """
 
     run: int
