@@ -211,8 +211,14 @@ class Context:
 
     # ------------------------------------------------------------------------------------ acting from outside
 
-    def put(self, slot: Slot[T], value: T) -> None:
+    def put(self, slot: Slot[T], value: T, *, origin: object = None) -> None:
         """Write a slot from outside. Any thread may call this. After the end of the context, the call does nothing.
+
+        Args:
+            slot: The slot.
+            value: The new value.
+            origin: Any object, for example the message that brought the value. Every rule that the write leads to gets
+                it as ``ctx.origin``. So a platform knows which message an output answers.
 
         Raises:
             UndeclaredError: The policy does not have the slot.
@@ -220,16 +226,21 @@ class Context:
         """
         self._known(slot, self.policy.slots, "slot")
         slot.check(value, "context.put")
-        self._running().write(slot.name, value, None)
+        self._running().write(slot.name, value, None, origin)
 
-    def emit(self, signal: Signal[T], payload: T | None = None) -> None:
+    def emit(self, signal: Signal[T], payload: T | None = None, *, origin: object = None) -> None:
         """Raise a signal from outside. Any thread may call this. After the end of the context, the call does nothing.
+
+        Args:
+            signal: The signal.
+            payload: Its payload.
+            origin: Any object; see `put`.
 
         Raises:
             UndeclaredError: The policy does not have the signal.
         """
         self._known(signal, self.policy.signals, "signal")
-        self._running().emit(signal.name, payload, None)
+        self._running().emit(signal.name, payload, None, origin)
 
     def wipe(self, signal: Signal[Any]) -> None:
         """Withdraw the live spikes of a signal, and all spikes that they caused (L20). Any thread may call this."""

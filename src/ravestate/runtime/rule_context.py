@@ -48,7 +48,7 @@ class RuleContext:
     the slot. A write takes effect and raises signals immediately.
     """
 
-    __slots__ = ("_host", "_payloads", "_values", "cancelled", "ended", "rule", "run")
+    __slots__ = ("_host", "_payloads", "_values", "cancelled", "ended", "origin", "rule", "run")
 
     def __init__(self, host: Host, effect: Run) -> None:
         self._host = host
@@ -56,6 +56,13 @@ class RuleContext:
         """The number of the run."""
         self.rule = effect.rule
         """The rule of the run."""
+        self.origin: Any = effect.origin
+        """The object that code outside the rules passed to ``put`` or ``emit`` with the event that led to this run.
+
+        It is None if that code passed no object, or if no event from outside led to the run: then the agent acts on its
+        own initiative. The object also passes through detached rules. If several events led to the run, the object of
+        the youngest spike counts; spikes of detached constraints count last.
+        """
         self._payloads = effect.payloads
         self._values: dict[str, Any] = effect.values  # type: ignore[assignment]  # made for this run alone
         self.cancelled = ""

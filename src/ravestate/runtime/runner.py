@@ -122,21 +122,21 @@ class Runner:
             self._random = random.Random(self._seed)
         return self._random
 
-    def emit(self, signal: str, payload: Any, run: int | None) -> None:
+    def emit(self, signal: str, payload: Any, run: int | None, origin: Any = None) -> None:
         """Raise a signal for a run, or for code outside the rules (None). Any thread may call this."""
         parts = self.short_way()
         if parts is not None:
-            parts.emit(signal, payload, run)
+            parts.emit(signal, payload, run, origin)
         else:
-            self.receive(Emit(signal, payload, run))
+            self.receive(Emit(signal, payload, run, origin))
 
-    def write(self, slot: str, value: Any, run: int | None) -> None:
+    def write(self, slot: str, value: Any, run: int | None, origin: Any = None) -> None:
         """Write a slot for a run, or for code outside the rules (None). Any thread may call this."""
         parts = self.short_way()
         if parts is not None:
-            parts.write(slot, value, run)
+            parts.write(slot, value, run, origin)
         else:
-            self.receive(Write(slot, value, run))
+            self.receive(Write(slot, value, run, origin))
 
     def short_way(self) -> Parts | None:
         """Return the engine's parts if an event may go directly to them; None if it must go through `receive`."""
