@@ -214,6 +214,25 @@ def test_a_text_that_the_voice_cannot_speak_has_the_time_at_which_the_voice_fail
     assert user.end < agent.start == agent.end and WHOLE.startswith(agent.text)
 
 
+def test_a_growing_utterance_counts_as_read_to_its_end_if_the_voice_fails(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """The voice fails at the third sentence. The sound of the first two sentences is played to its end."""
+    script(monkeypatch, "Tell me a story.")
+    speak = Synthesiser.speak
+
+    def fail(self: Synthesiser, text: str, *others: Any) -> Any:
+        if "noise" in text:
+            raise PlatformError("the voice is broken")
+        return speak(self, text, *others)
+
+    monkeypatch.setattr(Synthesiser, "speak", fail)
+    file, out = wav(tmp_path / "in.wav", track(TELL, length=3.0)), tmp_path / "out.wav"
+    _, agent = talk(file, out, storyteller(), settings=settings(filler_after=0.0))
+    assert agent.text == WHOLE and not agent.cut
+    assert 3.0 < agent.end - agent.start < 6.0 and loud(out, agent.end - 0.6, agent.end)
+
+
 def test_speech_that_the_end_of_the_agent_cuts_off_is_in_the_transcript(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
