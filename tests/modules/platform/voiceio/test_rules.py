@@ -398,6 +398,37 @@ def test_voiceio_uses_the_line_of_a_platform_that_serves_users_and_opens_no_devi
         assert sim.read(voiceio.conversation) is None
 
 
+def test_a_growing_utterance_ends_with_its_line(monkeypatch: pytest.MonkeyPatch, tmp_path: Path) -> None:
+    from ravestate.modules.platform.voiceio.wav_line import WavLine
+    from ravestate.testing import simulate
+
+    script(monkeypatch, "Tell me a story.")
+
+    async def serve(_: Any) -> None: ...
+
+    teller = rs.Module("teller", requires=[rawio])
+
+    @teller.rule(when=rawio.input.changed, writes=rawio.output, emits=rawio.piece)
+    async def tell(ctx: rs.RuleContext) -> None:
+        for piece in STORY:
+            await ctx.sleep(1.0)
+            ctx.emit(rawio.piece, piece)
+        ctx[rawio.output] = WHOLE
+
+    del tell
+    platform = rs.Module("page", requires=[rawio], serve=serve)
+    with simulate(teller, platform, voiceio, settings=FAST) as sim:
+        sim.put(rawio.sound, WavLine(wav(tmp_path / "in.wav", track(TELL, length=2.0))))
+        sim.advance(4.5)
+        assert sim.read(voiceio.agent_speaking)
+        sim.put(rawio.sound, None)
+        assert not sim.read(voiceio.agent_speaking)
+        heard = sim.read(rawio.heard)
+        assert heard and WHOLE.startswith(heard) and heard != WHOLE
+        sim.advance(10.0)
+        assert sim.said == [WHOLE] and sim.read(rawio.heard) == heard and not sim.read(rs.activity)
+
+
 def test_a_line_that_a_platform_provides_at_the_start_is_opened_only_once(
     monkeypatch: pytest.MonkeyPatch, tmp_path: Path
 ) -> None:

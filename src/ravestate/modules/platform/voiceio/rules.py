@@ -266,7 +266,7 @@ async def end_growing(ctx: rs.RuleContext) -> rs.Resign | None:
     when=speech.max_age(None).detached(),
     reads=(conversation, prosody),
     writes=(agent_speaking, held, rawio.heard),
-    until=barge_in | utterance | rawio.hush | rs.shutdown,
+    until=barge_in | utterance | rawio.hush | conversation.changed | rs.shutdown,
 )
 async def voice_it(ctx: rs.RuleContext) -> rs.Resign | None:
     """Speak an utterance sentence by sentence. In the end, note the part of it that the user heard."""
