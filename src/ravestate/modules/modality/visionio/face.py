@@ -29,7 +29,7 @@ class FaceVec:
         distance: The Euclidean distance to that person's nearest stored vector; None if `person` is None.
         quality: The visibility of the face in the picture from which `vector` comes (0 to 1).
         fresh: Whether `vector` comes from this picture, and not from an earlier one.
-        time: The time of the picture (seconds on the context's clock); None means now.
+        time: The time of the picture (seconds on the context's clock); None, or a time in the future, means now.
 
     Raises:
         PlatformError: The vector does not consist of 128 finite numbers.
