@@ -40,9 +40,17 @@ def test_the_error_names_a_missing_voice() -> None:
     with pytest.raises(PlatformError, match="has no voice 'en_US-nobody'"):
         Synthesiser(Settings(voice="en_US-nobody"))
     nobody = Synthesiser(Settings(voice="espeak:xx-none"))
-    with pytest.raises(PlatformError, match="has no voice 'xx-none'"):
+    with pytest.raises(PlatformError, match=r"has no voice 'xx-none': .* voiceio\.voice"):
         nobody.load()
     nobody.close()
+
+
+@pytest.mark.parametrize("language", ["de-AT", "zh"])
+def test_espeak_falls_back_to_the_voice_that_is_nearest_to_the_language(language: str) -> None:
+    """It has no voice for Austria, and the name of its Chinese voice is not ``zh``."""
+    near = Synthesiser(Settings(voice="espeak", language=language))
+    near.load()
+    near.close()
 
 
 def test_without_piper_the_default_voice_is_espeak(monkeypatch: pytest.MonkeyPatch) -> None:
