@@ -31,6 +31,8 @@ def test_each_demonstration_is_kept_in_a_new_file(tmp_path: Path) -> None:
         "über-fliegen-2.npz",
     ]
     assert keep(tmp_path, "!?", poses).name == "activity-1.npz"
+    long = "水" * 100  # 300 bytes
+    assert read(keep(tmp_path, long, poses))[0] == long
 
 
 @pytest.mark.parametrize(

@@ -102,6 +102,7 @@ def keep(folder: Path, name: str, poses: Sequence[Pose]) -> Path:
         PlatformError: The file cannot be written.
     """
     stem = re.sub(r"[^\w]+", "-", name.lower()).strip("-") or "activity"
+    stem = stem.encode()[:LONGEST].decode(errors="ignore")  # most file systems limit a name to 255 bytes
     number = 1
     while (file := folder / f"{stem}-{number}{SUFFIX}").exists():
         number += 1
