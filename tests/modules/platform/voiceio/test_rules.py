@@ -119,6 +119,7 @@ def test_the_user_interrupts_and_the_agent_stops_immediately(tmp_path: Path, mon
     story, *_, end = [one for one in said if one.speaker == "agent"]
     assert story.cut and WHOLE.startswith(story.text) and 8 < len(story.text.split()) < 25
     assert story.end <= 5.3 and not loud(tmp_path / "out.wav", 5.3, 5.5)
+    assert [one.speaker for one in said] == ["user", "agent", "user", "agent"]
     assert end.text == "Good night."
 
 
