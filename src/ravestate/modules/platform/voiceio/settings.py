@@ -2,12 +2,20 @@
 
 from __future__ import annotations
 
+import re
 from pathlib import Path
 from typing import Annotated, Literal
 
-from pydantic import ConfigDict, Field
+from pydantic import AfterValidator, ConfigDict, Field
 
 import ravestate as rs
+
+
+def _language(code: str) -> str:
+    if code and not re.fullmatch(r"[a-z]{2,3}(-[a-z0-9]+)*", code, re.IGNORECASE):
+        raise ValueError("write the code of a language, such as de or de-AT, or leave it empty to detect the language")
+    return code
+
 
 Seconds = Annotated[float, Field(ge=0, allow_inf_nan=False)]
 Share = Annotated[float, Field(ge=0, le=1)]
@@ -32,8 +40,8 @@ class Settings(rs.Settings):
     """``whisper``: faster-whisper; ``grammar``: pocketsphinx, for a few commands."""
     model: str = ""
     """For whisper, a model's name or folder, by default the best model on this machine. For grammar, a file in JSGF."""
-    language: str = "en"
-    """The user's language; empty to detect it in each utterance."""
+    language: Annotated[str, AfterValidator(_language)] = "en"
+    """The code of the user's language, such as ``de`` or ``de-AT``; empty to detect the language in each utterance."""
     threads: Annotated[int, Field(ge=0)] = 0
     """CPU threads of the recogniser; 0 takes up to four."""
     recogniser_timeout: Annotated[float, Field(gt=0, le=3600)] = 20.0

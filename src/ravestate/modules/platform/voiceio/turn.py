@@ -182,5 +182,5 @@ def _words(language: str) -> Mapping[str, frozenset[str]]:
     book: Mapping[str, Mapping[str, Sequence[str]]] = yaml.safe_load(
         (files(__package__ or "") / "words.yaml").read_text(encoding="utf-8")
     )
-    found = book.get(language.partition("-")[0] or "en", book["en"])
+    found = book.get(language.partition("-")[0].lower(), book["en"])
     return {role: frozenset(_bare(word) for word in words) for role, words in found.items()}
