@@ -9,7 +9,7 @@ from __future__ import annotations
 import json
 import os
 from collections.abc import Callable, Iterable, Mapping
-from typing import Any, cast, get_args
+from typing import Any, cast
 
 import pydantic
 
@@ -131,20 +131,27 @@ def _from_environment(name: str, model: type[pydantic.BaseModel], variables: Map
 def value_of(text: str, model: type[pydantic.BaseModel], field: str, parse: Callable[[str], Any]) -> Any:
     """Convert a text from the environment or from ``--set`` to a value for `field`.
 
-    A text field gets the text itself, and any other field gets the result of `parse`. If `parse` raises a ValueError,
-    the field gets the text.
+    A text field gets the text itself, and any other field gets the result of `parse`. The field gets the text as well
+    if `parse` raises a ValueError, or if the field takes the text but not the result: ``12`` is a text for
+    ``str | None`` and for a path, and a number for ``str | int``. If the result is a text, too, the field gets the
+    whole text, because `parse` removes ``#5`` from ``Room #5``.
     """
-    annotation = cast("Any", model.model_fields[field].annotation)
-    kinds = {annotation, *get_args(annotation)}
-    if annotation in TEXT:
+    if cast("Any", model.model_fields[field].annotation) in TEXT:
         return text
     try:
         value = parse(text)
     except ValueError:
         return text
-    # `12` is text for `str | None`, and a number for `str | int`
-    is_word = isinstance(value, (bool, int, float)) and not kinds & {bool, int, float}
-    return text if is_word and not kinds.isdisjoint(TEXT) else value
+    is_part = isinstance(value, str) and not text.startswith(('"', "'"))
+    return text if (is_part or not _takes(model, field, value)) and _takes(model, field, text) else value
+
+
+def _takes(model: type[pydantic.BaseModel], field: str, value: Any) -> bool:
+    try:
+        model(**{field: value})
+    except pydantic.ValidationError as error:  # other fields may be missing
+        return all(detail["loc"][:1] != (field,) for detail in error.errors())
+    return True
 
 
 def _faults(name: str, model: type[pydantic.BaseModel], error: pydantic.ValidationError) -> Iterable[DeclarationError]:
