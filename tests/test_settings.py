@@ -167,6 +167,20 @@ def test_one_error_has_all_faults_of_the_settings() -> None:
     assert "setting voice.sped: module 'voice' has no such setting; did you mean 'speed'?" in text
 
 
+def test_a_field_with_an_alias_is_set_and_reported_by_its_own_name() -> None:
+    class Aliased(rs.Settings):
+        alias_: int = pydantic.Field(0, alias="alias")
+
+    module = rs.Module("m", settings=Aliased)
+    for values, environment in (({"alias_": 5}, {}), ({"alias": 5}, {}), ({}, {"RAVESTATE_M_ALIAS_": "5"})):
+        assert load_settings([module], {"m": values}, environment)["m"].alias_ == 5
+    assert value_of("5", Aliased, "alias_", int) == 5
+    (fault,) = faults([module], {"m": {"alias": "five"}})
+    assert fault.startswith("setting m.alias_ = 'five'")
+    (fault,) = faults([module], {"m": {"alias": 5, "alias_": 6}})
+    assert fault == "setting m.alias_ is given twice, by its name and by its alias: write it once"
+
+
 def test_a_name_that_is_not_a_text_is_an_unknown_setting() -> None:
     values: Any = {True: 1, 5: 1, "speed": "fast"}  # YAML reads the name `on` as True
     found = faults([voice], {"voice": values})

@@ -57,7 +57,10 @@ class Settings(pydantic.BaseModel, metaclass=_SettingsMeta):
         5.0
     """
 
-    model_config = pydantic.ConfigDict(extra="forbid", frozen=True, validate_default=True)
+    # Sources and messages use the names of fields; a field's alias is a second name.
+    model_config = pydantic.ConfigDict(
+        extra="forbid", frozen=True, validate_default=True, populate_by_name=True, loc_by_alias=False
+    )
 
 
 def load_settings(
@@ -159,7 +162,9 @@ def _faults(name: str, model: type[pydantic.BaseModel], error: pydantic.Validati
         field = ".".join(str(part) for part in detail["loc"])
         top = str(detail["loc"][0]) if detail["loc"] else ""
         where = f"setting {name}.{field}" if field else f"settings of {name}"
-        if detail["type"] == "extra_forbidden":
+        if detail["type"] == "extra_forbidden" and field in model.model_fields:
+            yield DeclarationError(f"{where} is given twice, by its name and by its alias: write it once")
+        elif detail["type"] == "extra_forbidden":
             yield DeclarationError(f"{where}: module {name!r} has no such setting{nearest(field, model.model_fields)}")
         elif detail["type"] == "missing":
             yield DeclarationError(
