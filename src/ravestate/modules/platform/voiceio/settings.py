@@ -8,6 +8,7 @@ from typing import Annotated, Literal
 from pydantic import ConfigDict, Field
 
 import ravestate as rs
+from ravestate.settings import NameOrPath
 
 Seconds = Annotated[float, Field(ge=0, allow_inf_nan=False)]
 Share = Annotated[float, Field(ge=0, le=1)]
@@ -18,10 +19,10 @@ class Settings(rs.Settings):
 
     model_config = ConfigDict(protected_namespaces=())  # allow the field `model`
 
-    source: str = "default"
+    source: NameOrPath = "default"
     """The microphone: ``default``, a device's name, or a WAV file. A platform's line in ``rawio.sound`` takes
     priority."""
-    sink: str = "default"
+    sink: NameOrPath = "default"
     """The loudspeaker: ``default``, a device's name, or a WAV file; empty to drop the sound."""
     half_duplex: bool = False
     """Whether the agent is deaf while it speaks. This helps with a loud loudspeaker, but prevents interruptions."""
@@ -30,7 +31,7 @@ class Settings(rs.Settings):
 
     recogniser: Literal["whisper", "grammar"] = "whisper"
     """``whisper``: faster-whisper; ``grammar``: pocketsphinx, for a few commands."""
-    model: str = ""
+    model: NameOrPath = ""
     """For whisper, a model's name or folder, by default the best model on this machine. For grammar, a file in JSGF."""
     language: str = "en"
     """The user's language; empty to detect it in each utterance."""
@@ -42,7 +43,7 @@ class Settings(rs.Settings):
     captions: Seconds = 1.0
     """The seconds between two captions (``rawio.hearing``) while the user speaks; 0 for no captions."""
 
-    voice: str = ""
+    voice: NameOrPath = ""
     """``espeak``, ``espeak:en-gb``, ``piper``, or a Piper voice's name or file; by default Piper if it is set up."""
     piper: Path | None = None
     """The Python interpreter of Piper's environment; by default the one that ``make voice`` installs."""
