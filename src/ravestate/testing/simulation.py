@@ -95,7 +95,7 @@ class Simulation:
         instead.
 
         Args:
-            path: The agent file. Paths of modules in it are relative to its folder.
+            path: The agent file. Relative paths in it are relative to its folder.
             settings: Name of a module → key → value. They override the environment and the file.
             seed: The seed of random choices; by default that of the file, or else 0.
             patience: As for `Context` (seconds); by default that of the file.

@@ -9,6 +9,7 @@ from typing import Annotated, Literal
 from pydantic import AfterValidator, ConfigDict, Field
 
 import ravestate as rs
+from ravestate.settings import NameOrPath
 
 
 def _language(code: str) -> str:
@@ -26,10 +27,10 @@ class Settings(rs.Settings):
 
     model_config = ConfigDict(protected_namespaces=())  # allow the field `model`
 
-    source: str = "default"
+    source: NameOrPath = "default"
     """The microphone: ``default``, a device's name, or a WAV file. A platform's line in ``rawio.sound`` takes
     priority."""
-    sink: str = "default"
+    sink: NameOrPath = "default"
     """The loudspeaker: ``default``, a device's name, or a WAV file; empty to drop the sound."""
     half_duplex: bool = False
     """Whether the agent is deaf while it speaks. This helps with a loud loudspeaker, but prevents interruptions."""
@@ -38,7 +39,7 @@ class Settings(rs.Settings):
 
     recogniser: Literal["whisper", "grammar"] = "whisper"
     """``whisper``: faster-whisper; ``grammar``: pocketsphinx, for a few commands."""
-    model: str = ""
+    model: NameOrPath = ""
     """For whisper, a model's name or folder, by default the best model on this machine. For grammar, a file in JSGF."""
     language: Annotated[str, AfterValidator(_language)] = "en"
     """The code of the user's language, such as ``de`` or ``de-AT``; empty to detect the language in each utterance."""
@@ -50,7 +51,7 @@ class Settings(rs.Settings):
     captions: Seconds = 1.0
     """The seconds between two captions (``rawio.hearing``) while the user speaks; 0 for no captions."""
 
-    voice: str = ""
+    voice: NameOrPath = ""
     """``espeak``, ``espeak:en-gb``, ``piper``, or a Piper voice's name or file; by default Piper if it is set up."""
     piper: Path | None = None
     """The Python interpreter of Piper's environment; by default the one that ``make voice`` installs."""
