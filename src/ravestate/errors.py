@@ -75,7 +75,7 @@ class RunEnded(RuleError):
 class EngineError(RavestateError, RuntimeError):
     """A call does not fit the present state of a context or a simulation, or the engine itself has failed.
 
-    In virtual time, rules that trigger each other without end raise it, too.
+    In virtual time, rules that trigger each other without end raise this error, too.
     """
 
 

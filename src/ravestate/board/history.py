@@ -24,19 +24,20 @@ class Attempt:
     """One activation of a rule, as far as the trace shows it.
 
     `lacks` has the signals for which the attempt has no spike. If the attempt loses its last spikes in one instant,
-    `lacks` stays as it was before that instant. `complete` is the time at which the attempt took its last missing spike (seconds); None
-    while a spike is missing. `started` is None until the run starts. `settled` is None until the run ends.
+    `lacks` stays as it was before that instant. `complete` is the time at which the attempt took its last missing spike
+    (seconds); None while a spike is missing. `started` is None until the run starts. `settled` is None until the run
+    ends.
     """
 
     id: int
     rule: str
     clause: int
     records: list[t.Record] = field(default_factory=list[t.Record])
-    held: list[t.Held] = field(default_factory=list[t.Held])
+    held: list[t.Held] = field(default_factory=list[t.Held])  # all spikes that it took, also those that it lost
     lacks: tuple[str, ...] = ()
     complete: float | None = None
     waits: list[t.Waits] = field(default_factory=list[t.Waits])
-    gave_up: list[t.GaveUp] = field(default_factory=list[t.GaveUp])
+    gave_up: list[t.GaveUp] = field(default_factory=list[t.GaveUp])  # the latest losses, all of one instant
     started: t.Started | None = None
     settled: t.Settled | None = None
     _missing: tuple[str, ...] = ()  # the signals for which it has no spike now
@@ -62,7 +63,7 @@ class Attempt:
 
     @property
     def spikes(self) -> Iterable[int]:
-        """The numbers of the spikes with which the attempt's run began; without a run, of all spikes that it ever took."""
+        """The numbers of the spikes with which the attempt's run began; without a run, of all spikes that it took."""
         return [held.spike for held in self.held] if self.started is None else self.started.spikes
 
     def take(self, record: t.Held) -> None:
