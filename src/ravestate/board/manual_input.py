@@ -15,7 +15,7 @@ SAMPLES: tuple[Any, ...] = (True, 0, 0.5, "", [], {})  # one value of each JSON 
 
 
 def check_value(slot: Slot[Any], value: object, holds: object) -> None:
-    """Raise a `RavestateError` if a user may not write a JSON value to a slot. `Slot.check` checks more during the write.
+    """Raise a `RavestateError` if a user may not write a value to a slot. The write itself checks more (`Slot.check`).
 
     If the slot declares no type, the value must have the type of the current value, `holds`.
     """

@@ -34,7 +34,8 @@ def route(graph: LayeredGraph, middle: Sequence[float]) -> Routed:
     for number in range(len(graph.segments)):
         gaps[graph.layer[graph.ends(number)[0]]].append(number)
     across = [0.0] * len(graph.layer)
-    # segment → two x coordinates: where its line leaves the y of its left end, and where it reaches that of its right end
+    # segment → two x coordinates: where its line leaves the y of its left end, and where it reaches the y of its right
+    # end
     turns = [(0.0, 0.0)] * len(graph.segments)
     x = 0.0
     for layer, numbers in zip(graph.order, gaps, strict=True):
