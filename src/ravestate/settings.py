@@ -78,7 +78,8 @@ def load_settings(
     """Return the settings of each module, by the module's name.
 
     Values in `given` override values in the environment, and these override the defaults. For each module, `given` has
-    values of fields, or an instance of the module's settings class.
+    values of fields, or an instance of the module's settings class. Without `environment`, the variables of the
+    process count.
 
     Raises:
         DeclarationErrors: Modules or fields are unknown, or values have wrong types. The group has one error for each

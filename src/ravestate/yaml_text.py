@@ -31,7 +31,7 @@ def load_yaml(text: str, name: str) -> Any:
     """Return the value of a YAML text: mappings, lists, texts, numbers and dates; `None` if it is empty.
 
     If the text is not valid, repeats a key, nests too deeply, or stands for too many values, raise a
-    `DeclarationError`.
+    `DeclarationError`. Its message begins with `name`, the name of the file.
     """
     try:
         with contextlib.suppress(yaml.YAMLError):  # the slower loader below has better error messages
@@ -44,9 +44,9 @@ def load_yaml(text: str, name: str) -> Any:
 
 
 def compose_yaml(text: str, name: str) -> yaml.Node | None:
-    """Return the root node of a YAML text; `None` if it is empty. Nodes know their lines, and every scalar is text.
+    """Return the root node of a YAML text; `None` if it is empty. Each node has its line, and every scalar is text.
 
-    It raises the same errors as `load_yaml`.
+    For `name` and the errors, see `load_yaml`.
     """
     try:
         with contextlib.suppress(yaml.YAMLError):

@@ -40,8 +40,8 @@ class Context:
         modules: Modules to compile, or one compiled `Policy` to share.
         settings: Name of a module → the module's settings. They override settings from the environment.
         seed: The seed of all random choices that rules make through ``ctx.random``; a new seed in each run by default.
-        patience: A rule gives up if it is still not ready after another rule has waited for it for this many seconds
-            (law L16). A rule may set its own patience.
+        patience: The seconds for which other rules wait for a rule that lacks an input. Then that rule gives up its
+            spikes (law L16). A rule may set its own patience.
         trace: True to keep records of all events, for ``trace`` and ``explain``; or a function to call with each record.
         journal: A function, e.g. a `Journal`, to call with each event and each `Taken` mark, and its time (seconds).
 
@@ -196,7 +196,7 @@ class Context:
         If nothing is due now, set the clock forward to the next time at which something is due.
 
         Returns:
-            False if nothing is due, not even at a later time; else True.
+            False if the context is not paused, or if nothing is due, not even at a later time; else True.
         """
         return self._running().step()
 
@@ -243,7 +243,11 @@ class Context:
         self._running().emit(signal.name, payload, None, origin)
 
     def wipe(self, signal: Signal[Any]) -> None:
-        """Withdraw the live spikes of a signal, and all spikes that they caused (L20). Any thread may call this."""
+        """Withdraw the live spikes of a signal, and all spikes that they caused (L20). Any thread may call this.
+
+        Raises:
+            UndeclaredError: The policy does not have the signal.
+        """
         self._known(signal, self.policy.signals, "signal")
         self._running().receive(Wipe(signal.name))
 

@@ -33,7 +33,7 @@ BATCH: Final = 512  # the loop gets a turn after this many rounds of effects, so
 TURN: Final = 0.02  # the loop gets a turn after this many real seconds, even after fewer rounds than `BATCH`
 
 SETTLES: Final = 64
-"""The loop gets a turn after this many waits for a signal have ended in a row without one (`Runner.settle`)."""
+"""The loop gets a turn after this many calls of `Runner.settle` in a row."""
 
 ENDED = "the context has ended"
 
@@ -320,10 +320,10 @@ class Runner:
         self.clock.halt()
 
     def step(self) -> bool:
-        """Perform the next wave of effects; the clock must be halted. If no effect is due, first set the clock forward.
+        """Perform the next wave of effects while the clock is halted. If no effect is due, first set the clock forward.
 
         Returns:
-            False if nothing is due, not even at a later time; else True.
+            False if the clock is not halted, or if nothing is due, not even at a later time; else True.
         """
         if not self.clock.halted or self.closed:
             return False
