@@ -3,6 +3,8 @@
 The compiler gives each signal, slot, rule and clause a number, in declaration order, and fills in the records. Nothing
 changes the records afterwards, so any number of engines share them. A signal's record lists its listeners: the needs
 (constraints of clauses) that hear it. So the cost of a spike depends only on the rules that hear its signal.
+
+The *best* of several clauses has the greatest `Clause.base`. Among equals, the clause declared first is the best.
 """
 
 from __future__ import annotations
