@@ -379,7 +379,11 @@ export type TraceRecord =
   | Settled
   | Gap;
 
-/** A ready activation waits for the rules `for_`: rivals, or runs that hold a slot (L15). */
+/**
+ * A ready activation waits for the rules `for_`: rivals, or runs that hold a slot (L15).
+ *
+ * The wait ends at `until` at the latest, because the patience of the rivals ends then; None without such a limit.
+ */
 export interface Waits {
   kind: "waits";
   time: number;
@@ -411,7 +415,7 @@ export interface ActivationState {
   lacks: string[];
   /** The rules that it waits for, and by how many nats each is ahead (0 for a taken slot or a tie). */
   waits_for: [string, number][];
-  /** The time (seconds) by which the activation runs or gives a spike up; None if nothing limits the wait. */
+  /** The time (seconds) by which the activation runs, times out or gives a spike up; None without a limit. */
   until: number | null;
 }
 

@@ -5,7 +5,7 @@ meets it. With consent, the activation becomes a run of the rule. Every clause a
 holds no spike yet. No object represents a stand-by: the engine creates an object only when the first spike comes.
 
 - `GATHERING`: the activation lacks a spike, a spike is too young, or a predicate on a slot is false.
-- `READY`: the activation holds all its spikes, all are old enough, and it asks for consent.
+- `READY`: the activation holds all its spikes, all are old enough, and it asks for consent or, if it needs none, starts.
 - `WAITING`: a group refused consent; the activation asks again when something changes.
 - `RUNNING`: the rule's function runs.
 - `CANCELLING`: the engine has cancelled the function, which is cleaning up.

@@ -22,9 +22,10 @@ class Stop:
 
 @dataclass(slots=True)
 class Write:
-    """A run, or code outside the rules (``run=None``), writes a slot. The value of a collection is a whole mapping.
+    """A run, or code outside the rules (``run=None``), writes a slot.
 
-    Code outside the rules may add an `origin`, which ``ctx.origin`` returns in every rule that the write leads to.
+    The value of a collection is a mapping of all its items. Code outside the rules may add an `origin`, which
+    ``ctx.origin`` returns in every rule that the write leads to.
     """
 
     slot: str

@@ -129,7 +129,7 @@ class Holdings:
             self.update(activation)
 
     def _rematch(self, activation: Activation, need: Need) -> None:
-        """For a need that has lost its spike, take the oldest live spike that fits, if there is such a spike (L12)."""
+        """If a live spike fits a need that has lost its spike, take the oldest such spike (L12)."""
         if need.detached:
             self.look(activation, (need,))
         else:
@@ -204,11 +204,6 @@ class Holdings:
                         state.headless = {}
                     state.headless[spike] = None
 
-    def on_ripen(self, activation: Activation) -> None:
-        """Judge an activation again, because its spikes are old enough now (L14)."""
-        activation.ripens = NEVER
-        self.update(activation)
-
     def on_expire(self, time: float, spike: Spike) -> None:
         """Make incomplete holders give up a spike that is too old for them (L14)."""
         for holder in spike.holders:
@@ -264,9 +259,9 @@ class Holdings:
     def _twins(self, activation: Activation) -> list[Activation]:
         """Return the other incomplete activations of the clause with the same spikes and the same patience.
 
-        Every further spike comes to all of them, but only one may consume their spikes. While that one waits or runs,
-        another one stands for the clause in the questions of rivals (L16). All others are superfluous. If a clause never
-        got its last spike, they would pass on from spike to spike, and become ever more (L23).
+        Each further spike is offered to all of these activations, but only one of them can consume their spikes. While
+        that one waits or runs, a second one may still be a rival of other activations (L16). The others are superfluous.
+        If the clause never got its last spike, each new spike would add more of them (L23).
         """
         if not activation.clause.firm_bits:
             return []  # nothing is consumed, so all may run
@@ -293,9 +288,9 @@ class Holdings:
         self.lose(activation, needs, reason, by)
 
     def give_up(self, run: Activation, reason: str) -> None:
-        """Make all other activations of a run's rule give up the run's non-detached spikes, forever."""
+        """Make all other activations of a run's rule give up the run's non-detached spikes for good."""
         rule = run.clause.rule
-        for spike in run.stands_on:  # refuse all first, because an activation that loses one takes another
+        for spike in run.stands_on:  # refuse all first, because an activation that loses one spike takes another
             self.benches.unbench(spike)
             self.entries.refuse_for_good(spike, rule)
         for spike in run.stands_on:

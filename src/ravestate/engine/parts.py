@@ -33,7 +33,7 @@ from ravestate.policy.policy import Policy
 
 
 class Parts:
-    """The parts of one working engine. They have no state of their own: all their state is in `state`."""
+    """The parts of one working engine. They share `state`. Only `Agenda` and `Leaders` have tables of their own."""
 
     __slots__ = ("agenda", "halves", "holdings", "matching", "runs", "slots", "state")
 
@@ -209,7 +209,8 @@ class Parts:
 
     def on_ripen(self, time: float, activation: Activation) -> None:
         """Judge an activation again, because its spikes are old enough (L14)."""
-        self.holdings.on_ripen(activation)
+        activation.ripens = NEVER
+        self.holdings.update(activation)
 
     def on_look(self, time: float, looking: tuple[Need, Spike]) -> None:
         """Show a spike to a detached need for which it is old enough now (L19)."""
@@ -231,7 +232,8 @@ class Parts:
 
     def on_forget(self, time: float, spike: Spike) -> None:
         """Remove a spike that is too old for every detached need, if nothing holds it."""
-        self.holdings.entries.on_forget(spike)
+        if not (spike.is_held or spike.in_halves):
+            self.holdings.entries.forget(spike)
 
     def on_timeout(self, time: float, run: Activation) -> None:
         """Cancel a run that has taken too long."""
@@ -239,7 +241,8 @@ class Parts:
 
     def on_watch(self, time: float, watch: Watch) -> None:
         """Judge an `until` condition whose spikes are old enough now (L21)."""
-        self.runs.on_watch(watch)
+        watch.due = NEVER
+        self.runs.judge(watch)
 
     def _signal(self, name: str) -> SignalPlan:
         signal = self.state.signal_of.get(name)

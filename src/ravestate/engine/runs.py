@@ -122,11 +122,6 @@ class Runs:
         elif state.is_open(watch.clause):
             self.cancel(watch.run, "interrupted")
 
-    def on_watch(self, watch: Watch) -> None:
-        """Judge an `until` condition whose spikes are old enough now (L21)."""
-        watch.due = NEVER
-        self.judge(watch)
-
     def _unwatch(self, watch: Watch, spike: Spike) -> None:
         """Record that a watch no longer keeps a spike."""
         watches = self.state.watched_by.get(spike, {})

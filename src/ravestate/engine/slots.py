@@ -46,7 +46,7 @@ class Slots:
             state.values[flag.index] = value
 
     def store(self, slot: SlotPlan, key: str, item: Any, run: Activation | None) -> None:
-        """Store an item of a collection, or remove it (`ABSENT`). An equal item changes nothing (L2)."""
+        """Store an item of a collection; `ABSENT` removes the present item. An equal item changes nothing (L2)."""
         _mark_write(slot, run)
         self._change_item(slot, key, item, run)
 
