@@ -170,7 +170,7 @@ class Inlet:
         """Return the events that the server left out of an answer because there were too many.
 
         Raises:
-            OSError: The server does not send them now. The caller must keep its position, so that it asks again.
+            OSError: The server does not send these events now. The caller must not advance its position, so as to ask again.
         """
         found: list[Event] = []
         while start:

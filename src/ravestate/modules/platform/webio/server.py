@@ -67,7 +67,8 @@ class Server:
     """Serves the page of an agent: ``async with Server(agent) as server``. See also `webio.app`.
 
     Raises:
-        PlatformError: Other machines can reach the address, and there is no token. Or `make_app` refuses the agent.
+        PlatformError: Other machines can reach the address, and there is no token. Or the agent lacks `webio`, or has
+            `conio`.
     """
 
     def __init__(self, agent: Agent, routes: Iterable[BaseRoute] = (), inside: str | None = None) -> None:
