@@ -34,7 +34,7 @@ class PageServer:
         port: The port on the loopback interface; 0 takes a free one.
 
     Raises:
-        PlatformError: The port is in use.
+        PlatformError: The port is in use, or is not a port.
     """
 
     def __init__(self, robot: StandIn, port: int = 8421) -> None:
