@@ -1,4 +1,4 @@
-"""``ravestate memory``: list, show, export, load, forget, and reset."""
+"""``ravestate memory``: list, show, export, load and forget what an agent knows, and remove its memory."""
 
 from __future__ import annotations
 

@@ -78,7 +78,8 @@ class Constraint(Condition):
         """Accept a spike only if ``predicate(payload)`` is true. The predicate adds ln 2 to the utility (L9).
 
         Args:
-            predicate: A plain, fast function. The event loop calls it for each spike that might trigger the rule.
+            predicate: A plain, fast function. The event loop calls it for each spike that might trigger the rule. If
+                the function raises an exception, the predicate counts as false.
 
         Raises:
             DeclarationError: The predicate is not a function, or it is asynchronous.

@@ -84,8 +84,13 @@ class Slot(Generic[T]):
         )
 
     def holds(self, predicate: Predicate) -> Holds:
-        """Return a condition: a rule starts only while ``predicate(value)`` is true. It adds ln 2 to the utility
-        (L9)."""
+        """Return a condition: a rule starts only while ``predicate(value)`` is true.
+
+        The predicate is a plain, fast function of the slot's value. It adds ln 2 to the rule's utility (L9).
+
+        Raises:
+            DeclarationError: The predicate is not a function, or it is asynchronous.
+        """
         return Holds(self, checked_predicate(predicate, f"{self.name}.holds", "value"))
 
     def __getattr__(self, attribute: str) -> NoReturn:
