@@ -67,7 +67,10 @@ class Constraint(Condition):
         return replace(self, min_age_=_age(seconds, "min_age"))
 
     def max_age(self, seconds: Number | None) -> Constraint:
-        """Give up a spike when it is older than `seconds`. With ``None``, there is no limit. The default is 5 s."""
+        """Give up a spike when it is older than `seconds`. With ``None``, there is no limit. The default is 5 s.
+
+        A rule that is ready and waits for consent keeps its spikes, whatever their age (L14).
+        """
         return replace(self, max_age_=None if seconds is None else _age(seconds, "max_age"))
 
     def detached(self) -> Constraint:

@@ -40,7 +40,7 @@ class Module:
         serve: An async function, for platforms that serve many users. `server` declares it later.
 
     Raises:
-        DeclarationError: The name is invalid, a value in `requires` is no module, or `settings` is not a settings class.
+        DeclarationError: The name is invalid, a value in `requires` is no module, or `settings` is no settings class.
 
     Example:
         >>> import ravestate as rs
@@ -182,11 +182,12 @@ class Module:
                 cause exclude each other (L10).
             emits: The signal or signals that the function may emit.
             weight: A factor above 0 that multiplies the utility (L9).
-            cooldown: After a run, the utility takes this many seconds to recover from 0 (L9).
+            cooldown: When the rule has fired, its utility takes this many seconds to recover from 0 (L9). A run that
+                resigned does not count.
             patience: Other rules wait at most this many seconds for an input, or another cause's spike, that this rule
                 still lacks (L16). The default is the context's patience.
-            until: A condition that interrupts a run (L21).
-            timeout: The maximum duration of a run in seconds (L18); no limit by default.
+            until: A condition that interrupts a run when new spikes meet it (L21).
+            timeout: The maximum duration of a run in seconds, after which it fails (L18); no limit by default.
             detached: Whether the rule's effects begin new causal groups (L19).
             background: If true, the rule never makes ``rs.activity`` true (L22).
             name: The rule's name within the module; by default the function's name.

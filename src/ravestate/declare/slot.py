@@ -75,7 +75,7 @@ class Slot(Generic[T]):
             setattr(self, what, signal)
 
     def check(self, value: object, writer: str) -> None:
-        """Raise a `RuleError` that names the `writer` if the value is not of the slot's type."""
+        """If the value is not of the slot's type, raise a `RuleError` that names the `writer`."""
         if self.type is None or isinstance(value, self.type) or (value is None and self.default is None):
             return
         takes = getattr(self.type, "__name__", str(self.type))

@@ -29,6 +29,7 @@ NUMBERS: tuple[tuple[str, Callable[[Any], bool], str], ...] = (
 )
 """The numbers in an agent file: each key, its test, and a description of a valid value."""
 VARIABLE = re.compile(r"\$\{([A-Za-z_][A-Za-z0-9_]*)(?::-([^}]*))?\}")
+"""A variable of the environment in a setting: ``${NAME}`` or ``${NAME:-default}``."""
 
 
 @dataclass(slots=True)

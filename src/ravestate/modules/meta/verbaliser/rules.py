@@ -34,7 +34,7 @@ async def verbalise(ctx: rs.RuleContext) -> None:
 
 
 def as_intent(value: object) -> Intent:
-    """Return the slot's value as an `Intent`. The value is an `Intent` or the name of an intent."""
+    """Return a value of the slot `intent` as an `Intent`. Refuse a value that is neither an `Intent` nor a name."""
     if isinstance(value, Intent):
         return value
     if isinstance(value, str) and value:

@@ -128,6 +128,7 @@ async def listen(ctx: rs.RuleContext) -> rs.Resign | None:
     return None
 
 
+# The slots that an answer in the game writes, the signals that it emits, and the slots that it reads.
 EFFECTS = (game, verbaliser.intent, rawio.output, agenda.topics)
 EMITTED = (prompted, counted, begun, declined, perform, activity.taught, *FEELINGS.values())
 SURROUNDINGS = (gestures, activity.in_view)
