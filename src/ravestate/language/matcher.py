@@ -54,7 +54,7 @@ class Match:
     """A sentence that resembles the examples of a class."""
 
     score: float
-    """The confidence, 0 to 1: the share of such sentences that belong to the class."""
+    """The confidence, 0 to 1: the share of sentences with this margin that belong to the class."""
     example: str
     """The example that resembles the sentence most."""
     margin: float

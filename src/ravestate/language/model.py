@@ -177,6 +177,9 @@ class SentenceModel:
 
         The vectors of a token after each of `layers` lie side by side: shape (tokens, layers * d). The first token and
         the last one stand for no word, and have an empty span.
+
+        Raises:
+            PlatformError: The model lacks the layers.
         """
         import numpy as np
 

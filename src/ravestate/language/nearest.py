@@ -134,7 +134,7 @@ class _Group:
         self._asks = np.array([opens_question(text) for text in examples], dtype=np.bool_)
 
     def scores(self, texts: dict[str, str]) -> NDArray[Any]:
-        """Return the scores of texts (rows) and the examples (columns). `texts` maps plain texts to the written sentences."""
+        """Return the score of each example (column) for each text (row). `texts` maps plain texts to written sentences."""
         import numpy as np
 
         plains = list(texts)

@@ -29,7 +29,7 @@ LATEST = 16
 
 
 class Network:
-    """An ONNX file that reads each token's vectors after several layers of the encoder. Thread-safe."""
+    """A network that reads each token's vectors after several layers of the encoder. Thread-safe."""
 
     def __init__(self, file: Path) -> None:
         """Choose a file; load nothing yet.
@@ -95,7 +95,8 @@ class Network:
 
         Args:
             text: One or more sentences in normal form.
-            context: The number of the context, if the network has contexts.
+            context: The number of the label that the agent has just asked for, from 1 on; 0 for no label. Pass None if the
+                network has no such input.
             before: The utterance before. If the network reads it, its tokens come first, and the outputs have more tokens
                 than the spans.
         """

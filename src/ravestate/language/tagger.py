@@ -36,8 +36,9 @@ class Tag:
 class Tagger(Network):
     """A small recurrent network that labels the words of a text, on top of the bundled sentence model. Thread-safe.
 
-    ``tools/networks`` trains it on marked sentences. The module that uses it contains the file. For each token, it says whether a value begins there, goes on there, or
-    neither (the BIO scheme). It also says whether the text denies the value.
+    For each token, the network says whether a value begins there, goes on there, or neither (the BIO scheme). It also says
+    whether the text denies the value. ``tools/networks`` trains it on marked sentences. The trained file is in the folder
+    of the module that uses it.
 
     Example:
         ::

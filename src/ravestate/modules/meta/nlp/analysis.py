@@ -122,10 +122,13 @@ class Analysis:
 
 
 def load_models() -> None:
-    """Load the models with which `analyse` reads a text. Before, it recognises only sentences that equal an example.
+    """Load the models with which `analyse` reads a text.
+
+    Before this call, the matchers recognise only sentences that equal an example.
 
     Raises:
         ModelMissing: The sentence model, or the package that runs it, is not installed.
+        PlatformError: A model is broken.
     """
     for name in MATCHERS:
         bundled_matcher(name).load()
@@ -154,7 +157,7 @@ def analyse(
             kind of question, and the meaning as an answer.
 
     Raises:
-        PlatformError: spaCy or the pipeline is missing.
+        PlatformError: spaCy or the pipeline is missing, or the pipeline cannot be loaded.
     """
     if designed is not None:
         with contextlib.suppress(PlatformError):  # without the model, the matcher recognises only exact examples

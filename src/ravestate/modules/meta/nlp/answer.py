@@ -92,7 +92,7 @@ def yesno_of(text: str) -> YesNo:
 def is_only_yes(text: str) -> bool:
     """Return whether a text is a clear *yes* and nothing else: *yes, delete it please*.
 
-    Ask for it before a step that cannot be undone: the network may mistake *I love it here* for a yes.
+    Require such a *yes* before a step that cannot be undone: the network may mistake *I love it here* for a *yes*.
     """
     return _ONLY.fullmatch(text) is not None
 

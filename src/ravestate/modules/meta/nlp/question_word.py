@@ -58,6 +58,7 @@ MEASURES = word_set(
     "many much old long far tall big large high deep heavy fast hot cold cool warm expensive often wide small short "
     "young late soon close near thick strong loud rich quickly regularly frequently little few costly",
 )
+"""Words after *how* that ask for an amount: *how many*, *how old*."""
 _CLASSES = {
     QuestionWord.TIME: word_set("time day date hour week month year weekday century decade evening night weekend"),
     QuestionWord.PLACE: word_set(

@@ -284,8 +284,7 @@ class EmbeddedStore:
             log.warning("memory %s: %s: %s", self._path, what, kept)
 
     def rest(self) -> None:
-        """Purge the file, unless a purge has failed since the last deletion. Otherwise, every pause would log another
-        warning."""
+        """Purge the file. If a purge has failed since the last deletion, do nothing: every pause would log a warning."""
         if not self._has_failed:
             self.purge()
 

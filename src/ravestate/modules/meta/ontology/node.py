@@ -66,7 +66,7 @@ class Node:
         return default if value is None else value
 
     def __getitem__(self, name: str) -> Any:
-        """Return the value of a property."""
+        """Return the value of a property; raise `KeyError` if it has no value."""
         value = self.properties.get(name)
         if value is None:
             known = [key for key, value in self.properties.items() if value is not None]

@@ -71,7 +71,7 @@ def whole_words(expression: str) -> re.Pattern[str]:
     Each expression has a pattern of its own: in a pattern for several, groups of the same name would clash.
 
     Raises:
-        re.error: It is not a regular expression.
+        re.error: `expression` is not a regular expression.
     """
     re.compile(expression)  # by itself: the brackets of "mad)|(sad" would fit those of the next line
     return re.compile(rf"(?<!\S)(?:{expression})(?!\S)")

@@ -195,7 +195,7 @@ async def offer(ctx: rs.RuleContext) -> rs.Resign | None:
     """After a long silence, invite the user to ask about the agent. Do so only once."""
     count, last = ctx[turns]
     if ctx[prompted] is not None or count < TURNS:
-        return rs.Resign("the agent has offered it before, or the conversation has just begun")
+        return rs.Resign("the agent has made this offer before, or the conversation has just begun")
     if ctx.now - last < ctx.settings.prompt_after or ctx[idle.unanswered]:
         return rs.Resign("the user has spoken, or owes an answer")
     ctx[prompted] = ctx.now

@@ -53,6 +53,7 @@ class Candidate:
     text: str
     title: str
     row: int
+    """The number of the passage in the index."""
     score: float
     """The reader's score, up to 11; most passages above 0 are good answers."""
     covered: float
@@ -77,7 +78,7 @@ class Answer:
 
 
 def together(answers: Sequence[Answer]) -> Answer:
-    """Return the answers to several questions of one utterance as one answer. It is as sure as the least sure one."""
+    """Return the answers to several questions of one utterance as one answer, with the lowest of their confidences."""
     if len(answers) == 1:
         return answers[0]
     texts = dict.fromkeys(
@@ -321,8 +322,8 @@ _WORLD = re.compile(r"\b(?:in|of) the world\b|\bon earth\b|\bof all\b", re.IGNOR
 def _is_plain(question: Question, text: str) -> bool:
     """Return whether a passage is about just what the question names.
 
-    It begins with the question's subject: *Clouds are made of droplets*, not *Cirrus clouds consist of ice*. To a question
-    such as *what is the longest river*, it speaks of the whole world.
+    The passage must begin with the question's subject: *Clouds are made of droplets*, not *Cirrus clouds consist of ice*.
+    For a question such as *what is the longest river*, the passage must instead mention the whole world.
     """
     asked = question.text.lower()
     ranked = any(word.endswith("est") or word == "most" for group in question.needs for word in group)

@@ -130,9 +130,9 @@ def _again(text: str, before: str) -> str:
 
 
 def _decided(answerer: Answerer, question: Question, settings: Settings, titles: Sequence[str]) -> Answer:
-    """Return the documents' answer to `other_wording`, or if it is not sure, to the question itself.
+    """Return the documents' answer to `other_wording` of the question, if that answer is sure.
 
-    A vague question gets no sure answer.
+    Otherwise, return the answer to the question itself. A vague question gets no sure answer.
     """
     if not question.declined and (other := other_wording(question.text)):
         decided = answerer.answer(other, titles)

@@ -28,9 +28,9 @@ _HYPHEN = re.compile(r"(?<=[a-z])-\n(?=[a-z])")
 def passages_of(text: str) -> Iterator[Passage]:
     """Yield the passages of `text`, in order.
 
-    An empty line ends a paragraph; a single line break is a space. A sentence that begins with
-    a word such as *it* or *this* needs the latest sentence with another beginning. If both are short enough, they are
-    one passage.
+    An empty line ends a paragraph; a single line break is a space. A sentence that begins with a word such as *it* or
+    *this* refers to the latest sentence that does not begin with such a word. If both together are short enough, they
+    are one passage.
 
     Example:
         >>> [p.text for p in passages_of("Delft is a town in Holland. It has 100,000 inhabitants.\\n\\nVermeer lived there.")]

@@ -28,7 +28,9 @@ THE_TWO = frozenset(["i", "me", "my", "mine", "myself", "you", "your", "yours", 
 SEXES = {"he": "he", "him": "he", "his": "he", "she": "she", "her": "she", "hers": "she"}
 PRONOUNS = frozenset([*SEXES, "it", "its", "they", "them", "their", "there", "this", "that"])
 WH = ("WP", "WP$", "WDT", "WRB")
+"""The tags of question words."""
 FINITE = ("VBZ", "VBP", "VBD", "MD")
+"""The tags of finite verbs."""
 _NAMES = ("GPE", "LOC", "PERSON", "ORG", "FAC", "NORP", "WORK_OF_ART", "EVENT", "PRODUCT", "LANGUAGE")
 
 

@@ -18,7 +18,6 @@ from .question import FINITE, PRONOUNS, SEXES, WH, Parse, is_name, parse
 
 NUMBERS = ("DATE", "TIME", "CARDINAL", "QUANTITY", "MONEY", "PERCENT", "ORDINAL")
 """The labels of entities that are numbers, not names."""
-PLACES = ("GPE", "LOC", "FAC")
 LONGEST = 200
 """The maximum number of characters of a question that may refer to another question."""
 KEPT = 6

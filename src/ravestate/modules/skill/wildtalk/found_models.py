@@ -12,7 +12,7 @@ from .gguf_header import read_header
 from .model_store import folder
 
 LEAST = 450_000_000
-"""The minimum number of parameters. The names of such models say "0.5B"."""
+"""The minimum number of parameters. The names of models of this size say "0.5B"."""
 
 FLUENT = 4_500_000_000
 """The maximum number of parameters of a model that answers fluently without a graphics card."""

@@ -24,7 +24,7 @@ OLLAMA = "http://localhost:11434/v1"
 
 
 class Settings(rs.Settings):
-    """The language model, and its persona."""
+    """The choice of the language model, its persona, and the limits of an answer."""
 
     model_config = ConfigDict(protected_namespaces=())  # `model_path` is ours
 

@@ -19,7 +19,8 @@ class PendingBackend:
         self._chosen: asyncio.Future[Backend] = asyncio.get_running_loop().create_future()
 
     def resolve(self, backend: Backend | None, fault: PlatformError | None = None) -> None:
-        """Pass the chosen backend to the waiting calls. If there is none, these calls raise `fault`."""
+        """Pass the chosen backend to the waiting calls. If there is none, these calls raise `fault`, or by
+        default the error that there is no model."""
         if backend is not None:
             self._chosen.set_result(backend)
         else:
@@ -44,4 +45,4 @@ class PendingBackend:
                 yield piece
 
     async def close(self) -> None:
-        """Do nothing: this does not close the chosen backend."""
+        """Do nothing: the chosen backend stays open."""

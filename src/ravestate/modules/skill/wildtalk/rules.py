@@ -263,7 +263,7 @@ async def go_on(ctx: rs.RuleContext) -> rs.Resign | None:
     weight=4.0,  # this rule outranks modules that only note a fact in the same words: "I am Ann, my dog has died"
 )
 async def comfort(ctx: rs.RuleContext) -> rs.Resign | None:
-    """Answer sorrow, requests for a performance, corrections and known words before another rule notes a fact there."""
+    """Answer sorrow, requests for a performance, corrections and known words. Outrank rules that only note a fact."""
     seen = ctx.payload(nlp.analysis.changed)
     if seen is None:
         return rs.Resign("nothing was analysed")
