@@ -275,7 +275,10 @@ class Context:
             TimeoutError: No spike came in time.
             EngineError: The context ended before a spike came.
             UndeclaredError: The policy does not have the signal.
+            ValueError: `timeout` is NaN.
         """
+        if timeout is not None and math.isnan(timeout):
+            raise ValueError(f"next(timeout={timeout!r}): write a number of seconds, or None to wait without a limit")
         check_known(signal, self.policy.signals, Signal)
         runner = self._running()
         if runner.closed:
