@@ -272,19 +272,6 @@ async def test_the_message_about_a_plain_wrapper_of_an_async_rule_says_what_to_w
 
 
 @on_loop
-async def test_a_rule_that_takes_too_many_arguments_fails_like_any_other() -> None:
-    talk = Talk()
-
-    async def greedy(ctx: rs.RuleContext, more: object) -> None:
-        pass
-
-    talk.rule(greedy)
-    async with rs.Context(talk.module) as context:
-        assert await talk.ask(context) == "fallback"
-        assert "missing 1 required positional argument: 'more'" in str(only_failure(talk))
-
-
-@on_loop
 async def test_no_other_rule_answers_if_a_rule_fails_after_it_has_written() -> None:
     talk = Talk()
 
