@@ -39,8 +39,8 @@ class AgentSpec:
         modules: The modules, in order.
         settings: Name of a module → key → value. Only settings from files and options are here.
         seed: The seed of random choices; `None` for a new seed in each run.
-        patience: A rule gives up if it is still not ready after another rule has waited for it for this many seconds
-            (law L16).
+        patience: The seconds for which other rules wait for a rule that lacks an input. Then that rule gives up its
+            spikes (law L16).
         faults: A message for each mistake so far.
     """
 
