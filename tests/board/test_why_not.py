@@ -102,6 +102,51 @@ def test_why_not_says_that_a_better_rule_answered(stage: Stage) -> None:
     assert ("demo:qa",) in [moment.rules for moment in found.moments]
 
 
+@pytest.mark.parametrize(
+    ("weight", "late", "reason"),
+    [
+        (1.2, True, "both utilities are 0, greater weight × recovery"),
+        (1.0, False, "equal utility, declared earlier"),
+    ],
+)
+def test_why_not_says_what_decides_between_rules_with_a_utility_of_0(
+    stage: Stage, weight: float, late: bool, reason: str
+) -> None:
+    async def answer(ctx: rs.RuleContext) -> None:
+        ctx[stage.output] = "answer"
+
+    def declare_rival() -> None:
+        stage.module.rule(when=stage.touch.min_age(1), writes=stage.output, weight=weight, name="rival")(answer)
+
+    if not late:
+        declare_rival()
+    stage.module.rule(when=stage.touch, writes=stage.output, name="quick")(answer)
+    if late:
+        declare_rival()
+    with stage.run() as sim:
+        sim.emit(stage.touch)
+        found = ask(sim, "quick", "demo:touch")
+    assert found.words == f"it has been ready since 0.000 s and waits for demo:rival ({reason})"
+
+
+def test_why_not_names_no_lead_of_a_rule_that_is_behind(stage: Stage) -> None:
+    """Two rules worth 0 take turns: after its run, the heavier rule has recovered less."""
+
+    async def answer(ctx: rs.RuleContext) -> None:
+        ctx[stage.output] = "answer"
+
+    stage.module.rule(when=stage.touch, writes=stage.output, name="steady")(answer)
+    stage.module.rule(when=stage.touch, writes=stage.output, name="heavy", weight=2.0, cooldown=10.0)(answer)
+    with stage.run() as sim:
+        sim.emit(stage.touch)
+        sim.advance(1)
+        sim.emit(stage.touch)
+        assert ask(sim, "heavy", "demo:touch", 0).verdict == "fired"
+        found = ask(sim, "heavy", "demo:touch", 1)
+    assert found.verdict == "outrun"
+    assert "demo:steady (both utilities are 0, greater weight × recovery)" in found.words
+
+
 def test_why_not_says_that_no_rule_raised_a_signal_for_this_cause(stage: Stage) -> None:
     conversation(stage, is_question=False)
     with stage.run() as sim:

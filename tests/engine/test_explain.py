@@ -51,6 +51,17 @@ def test_the_lead_of_a_rival_is_the_lead_of_its_competing_clause() -> None:
     assert alive(engine, "m:fallback").waits_for == (("m:two", pytest.approx(theirs - mine)),)
 
 
+def test_a_rival_that_only_its_weight_puts_ahead_has_no_lead_in_utility() -> None:
+    m = rs.Module("m")
+    go, out = m.signal("go"), m.slot("out", "")
+    declared(m, "first", when=go, writes=out)
+    declared(m, "heavy", when=go.min_age(1), writes=out, weight=1.2)
+    engine = Engine(rs.compile(m))
+    assert not runs(engine, Emit("m:go"))
+    assert alive(engine, "m:first").waits_for == (("m:heavy", 0.0),)
+    assert str(explain(engine, engine.policy.rule_plan("m:first"))).endswith("\n    waits for m:heavy")
+
+
 @pytest.mark.parametrize("traced", [False, True])
 def test_a_rule_that_waits_behind_another_rule_also_names_the_rivals_of_that_rule(traced: bool) -> None:
     m = rs.Module("m")

@@ -4,6 +4,7 @@ import asyncio
 import contextlib
 import json
 import logging
+import math
 import threading
 from collections.abc import Callable
 from typing import Any
@@ -241,6 +242,13 @@ async def test_a_rule_does_not_run_in_the_task_that_waits_for_its_signal() -> No
         context.emit(asked)
         await context.next(answered)
     assert tasks != [asyncio.current_task()] and asyncio.current_task() is not None
+
+
+@on_loop
+async def test_context_next_refuses_a_timeout_that_never_ends_because_it_is_nan() -> None:
+    async with rs.Context(policy) as context:
+        with pytest.raises(ValueError, match=r"next\(timeout=nan\): write a number of seconds"):
+            await context.next(number, timeout=math.nan)
 
 
 @on_loop

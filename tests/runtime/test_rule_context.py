@@ -349,10 +349,23 @@ def test_undeclared_emissions_are_refused(scene: Scene, what: Callable[[Scene], 
     assert isinstance(failure, rs.UndeclaredError) and text in str(failure)
 
 
-def test_wiping_a_signal_withdraws_its_spikes_and_an_unknown_signal_is_refused(scene: Scene) -> None:
-    scene.run(lambda ctx: ctx.wipe(scene.mood))
-    assert "no signal 'm:mood'; did you mean 'm:mood:changed'" in str(scene.outcome())
-    scene = Scene()
+@pytest.mark.parametrize(
+    ("what", "text"),
+    [
+        (lambda s: s.mood, "m:mood; it is a slot: write mood.changed"),
+        (lambda s: rs.Module("m").signal("outt"), "m:outt; did you mean 'm:out'?"),
+        (lambda s: rs.Module("far").signal("x"), "far:x; add module far to the context"),
+        (lambda s: "m:out", "'m:out'"),
+    ],
+)
+def test_wiping_an_unknown_signal_is_refused(scene: Scene, what: Callable[[Scene], Any], text: str) -> None:
+    scene.run(lambda ctx: ctx.wipe(what(scene)))
+    failure = scene.outcome()
+    assert isinstance(failure, rs.UndeclaredError)
+    assert re.fullmatch(rf"rule m:doer \({HERE}:\d+\): this context has no signal {re.escape(text)}", str(failure))
+
+
+def test_wiping_a_signal_withdraws_its_spikes(scene: Scene) -> None:
     both: list[str] = []
 
     @scene.module.rule(when=scene.other & scene.out)

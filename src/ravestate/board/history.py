@@ -14,6 +14,7 @@ from ravestate.board.description import Description, RuleView
 from ravestate.engine import trace as t
 from ravestate.engine.explain import join, seconds
 from ravestate.engine.reasons import Outcome
+from ravestate.engine.standing import lead
 from ravestate.engine.trace import GaveUp, Passed, Waits
 
 BY_TIME = attrgetter("time")
@@ -272,16 +273,20 @@ class Rivals:
     def ahead(self, name: str, rule: RuleView, attempt: Attempt, time: float) -> str:
         """Return a text in brackets: by how much effective utility (nats) the rule `name` is ahead of `rule`.
 
-        If both utilities are equal, the text says so. It is empty if `rule` is ahead.
+        If both utilities are equal, the text says what decides instead (L15). It is empty if `rule` is ahead.
         """
         other = self._description.rule(name)
         if other is None or name == rule.name:
             return ""
-        theirs = max((clause.base for clause in other.clauses), default=0.0) * self._recovered(other, time)
-        nats = theirs - rule.clauses[attempt.clause].base * self._recovered(rule, time)
-        if nats > 1e-8:
-            return f" ({nats:.3f} nats ahead)"
-        return " (equal utility, declared earlier)" if abs(nats) <= 1e-8 else ""
+        theirs, mine = other.weight * self._recovered(other, time), rule.weight * self._recovered(rule, time)
+        worth = max((clause.utility for clause in other.clauses), default=0.0) * theirs
+        nats = lead(worth, rule.clauses[attempt.clause].utility * mine)
+        if nats:
+            return f" ({nats:.3f} nats ahead)" if nats > 0 else ""
+        heavier = 0.0 if worth else lead(theirs, mine)
+        if heavier:
+            return " (both utilities are 0, greater weight × recovery)" if heavier > 0 else ""
+        return " (equal utility, declared earlier)" if self._is_earlier(other, rule) else ""
 
     def answerer(self, rule: RuleView, lost: GaveUp | Passed) -> tuple[str, str]:
         """Return the name of the rule that answered a lost spike, and its path as text.
@@ -306,6 +311,10 @@ class Rivals:
             return ended
         last = pressed[over - 1]
         return f"{last.by} waited for it from {seconds(last.time)} on, and {ended}"
+
+    def _is_earlier(self, one: RuleView, other: RuleView) -> bool:
+        """Return whether `one` is declared before `other`."""
+        return next(rule for rule in self._description.rules if rule.name in (one.name, other.name)) == one
 
     def _recovered(self, rule: RuleView, time: float) -> float:
         """Return how far a rule has recovered since its last run, from 0 to 1 (L9)."""

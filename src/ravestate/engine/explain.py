@@ -43,7 +43,8 @@ class ActivationState:
         state: ``gathering``, ``ripening``, ``gated``, ``ready``, ``waiting``, ``running`` or ``cancelling``.
         holds: The signal and the age (seconds) of each spike that the activation holds.
         lacks: The signals of the spikes that it lacks.
-        waits_for: The rules that it waits for, and by how many nats each is ahead (0 for a taken slot or a tie).
+        waits_for: The rules that it waits for, and by how many nats each is ahead. The number is 0 for a taken slot, a
+            tie, or utilities of 0.
         until: The time (seconds) by which the activation runs, times out or gives a spike up; None without a limit.
     """
 
@@ -153,9 +154,7 @@ def _activation(state: State, activation: Activation) -> ActivationState:
     waits: list[tuple[str, float]] = []
     refusal = activation.refusal
     if refusal is not None:
-        mine = state.effective(clause)
-        for rule, rival in refusal.all_names.items():
-            waits.append((rule, max(0.0, state.effective(rival) - mine)))
+        waits = [(rule, state.lead(rival, clause)) for rule, rival in refusal.all_names.items()]
     bounds = [activation.ripens, min(activation.patience_ends.values(), default=NEVER), activation.deadline]
     if activation.state == GATHERING:
         held = zip(activation.spikes, clause.needs, strict=True)

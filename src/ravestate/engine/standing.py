@@ -44,6 +44,11 @@ class Standing:
         """Return the effective utility of a clause now, in nats (L9)."""
         return clause.base * self.recovery(clause)[0] if clause.rule.cooldown else clause.base
 
+    def lead(self, one: Clause, other: Clause) -> float:
+        """Return by how many nats `one` is ahead of `other` now; 0 if only weights or the order of declaration decide."""
+        worth = one.utility * one.rule.weight * self.recovery(one)[0]
+        return max(0.0, lead(worth, other.utility * other.rule.weight * self.recovery(other)[0]))
+
     def is_ahead(self, one: Clause, other: Clause) -> bool:
         """Return whether `one` is ahead of `other`, both now and in the next moment. If so, `other` waits for `one`."""
         if not (one.rule.cooldown or other.rule.cooldown):
@@ -65,14 +70,14 @@ class Standing:
         now = (worth[0] * far, worth[1] * their_far)
         trend = (worth[0] * fast, worth[1] * their_fast)
         bare = (weight[0] * far, weight[1] * their_far)
-        lead = _lead(now)
-        soon = lead or _lead(trend)
+        ahead = lead(*now)
+        soon = ahead or lead(*trend)
         if now == (0.0, 0.0):
-            lead = _lead(bare)
+            ahead = lead(*bare)
             if trend == (0.0, 0.0):
-                soon = lead or _lead((weight[0] * fast, weight[1] * their_fast))
+                soon = ahead or lead(weight[0] * fast, weight[1] * their_fast)
         first = 1 if one.index < other.index else -1
-        return (lead or first) > 0, (soon or first) > 0
+        return (ahead or first) > 0, (soon or first) > 0
 
     def crossing(self, one: Clause, other: Clause) -> float:
         """Return the time (seconds) at which recovery next changes the order of two clauses; `inf` for never.
@@ -95,8 +100,6 @@ class Standing:
         return rounded if rounded > self.now else turn if turn > self.now else inf
 
 
-def _lead(pair: tuple[float, float]) -> int:
-    one, other = pair
-    if abs(one - other) <= SAME * max(abs(one), abs(other)):
-        return 0
-    return 1 if one > other else -1
+def lead(one: float, other: float) -> float:
+    """Return by how much a utility or a weight is greater than another; 0 if they count as equal."""
+    return 0.0 if abs(one - other) <= SAME * max(abs(one), abs(other)) else one - other

@@ -375,6 +375,11 @@ class State(Memory):
         self.standing.now = self.now
         return self.standing.effective(clause)
 
+    def lead(self, one: Clause, other: Clause) -> float:
+        """Return by how many nats a clause is ahead of another now (`Standing.lead`)."""
+        self.standing.now = self.now
+        return self.standing.lead(one, other)
+
     def order(self, activation: Activation) -> tuple[float, int, int]:
         """Return the sort key of a ready activation: greatest effective utility, then first declared, then oldest."""
         return (-self.effective(activation.clause), activation.clause.index, activation.id)

@@ -14,17 +14,17 @@ from ravestate.declare.module import Module
 from ravestate.declare.rule import Rule
 from ravestate.declare.signal import Signal
 from ravestate.declare.slot import Slot
-from ravestate.declare.wording import spelt
 from ravestate.engine.engine import DEFAULT_PATIENCE, Engine
 from ravestate.engine.events import Event, Start, Stop, Wipe
 from ravestate.engine.explain import Explanation, explain
 from ravestate.engine.snapshot import snapshot
 from ravestate.engine.trace import Record
-from ravestate.errors import DeclarationError, EngineError, UndeclaredError, nearest
+from ravestate.errors import DeclarationError, EngineError
 from ravestate.policy.compile import compile_policy
 from ravestate.policy.policy import Policy
 from ravestate.runtime.journal import Taken
 from ravestate.runtime.listeners import NO_HOOKS, Hooks
+from ravestate.runtime.lookup import check_known
 from ravestate.runtime.runner import Runner
 from ravestate.settings import load_settings
 
@@ -224,7 +224,7 @@ class Context:
             UndeclaredError: The policy does not have the slot.
             RuleError: The value is not of the slot's type.
         """
-        self._known(slot, self.policy.slots, "slot")
+        check_known(slot, self.policy.slots, Slot)
         slot.check(value, "context.put")
         self._running().write(slot.name, value, None, origin)
 
@@ -239,7 +239,7 @@ class Context:
         Raises:
             UndeclaredError: The policy does not have the signal.
         """
-        self._known(signal, self.policy.signals, "signal")
+        check_known(signal, self.policy.signals, Signal)
         self._running().emit(signal.name, payload, None, origin)
 
     def wipe(self, signal: Signal[Any]) -> None:
@@ -248,7 +248,7 @@ class Context:
         Raises:
             UndeclaredError: The policy does not have the signal.
         """
-        self._known(signal, self.policy.signals, "signal")
+        check_known(signal, self.policy.signals, Signal)
         self._running().receive(Wipe(signal.name))
 
     def add_rule(self, rule: Rule[Any, Any]) -> None:
@@ -275,8 +275,11 @@ class Context:
             TimeoutError: No spike came in time.
             EngineError: The context ended before a spike came.
             UndeclaredError: The policy does not have the signal.
+            ValueError: `timeout` is NaN.
         """
-        self._known(signal, self.policy.signals, "signal")
+        if timeout is not None and math.isnan(timeout):
+            raise ValueError(f"next(timeout={timeout!r}): write a number of seconds, or None to wait without a limit")
+        check_known(signal, self.policy.signals, Signal)
         runner = self._running()
         if runner.closed:
             raise runner.fault or EngineError(f"the context has ended: there will be no {signal.name}")
@@ -340,7 +343,7 @@ class Context:
         Raises:
             UndeclaredError: The policy does not have the slot.
         """
-        self._known(slot, self.policy.slots, "slot")
+        check_known(slot, self.policy.slots, Slot)
         return self._running().read(slot.name)
 
     def explain(self, rule: str | Rule[Any, Any]) -> Explanation:
@@ -363,16 +366,6 @@ class Context:
         if self._runner is None:
             raise EngineError("the context has not started: write `async with rs.Context(...) as context:`")
         return self._runner
-
-    def _known(self, thing: Slot[Any] | Signal[Any], names: Mapping[str, Any], what: str) -> None:
-        name = getattr(thing, "name", None)
-        if not isinstance(name, str) or names.get(name) is not thing:
-            hint = ""
-            if what == "signal" and isinstance(thing, Slot):
-                hint = f"; it is a slot: write {spelt(str(name))}.changed"
-            elif isinstance(name, str):
-                hint = nearest(name, names) or f"; add module {name.split(':')[0]} to the context"
-            raise UndeclaredError(f"this context has no {what} {thing!r}{hint}")
 
 
 def _check_seconds(patience: object) -> None:

@@ -17,6 +17,7 @@ from ravestate.engine.events import Discard, Event, Store, Wipe
 from ravestate.errors import RavestateError, RuleError, RunEnded, UndeclaredError, nearest
 from ravestate.policy.policy import Policy
 from ravestate.runtime.clock import Clock
+from ravestate.runtime.lookup import check_known
 
 T = TypeVar("T")
 V = TypeVar("V")
@@ -160,6 +161,7 @@ class RuleContext:
             UndeclaredError: The policy does not have the signal.
         """
         self._alive()
+        check_known(signal, self._host.policy.signals, Signal, self.rule)
         self._host.receive(Wipe(signal.name, self.run))
 
     def add_rule(self, rule: Rule[Any, Any]) -> None:

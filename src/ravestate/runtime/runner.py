@@ -13,7 +13,7 @@ from time import perf_counter
 from typing import Any, Final, Protocol
 
 from ravestate.declare.rule import Rule
-from ravestate.declare.wording import said, short
+from ravestate.declare.wording import said
 from ravestate.engine.effects import Cancel, Effect, Ended, Failed, Run, Spiked
 from ravestate.engine.engine import Engine
 from ravestate.engine.events import AddRule, Emit, Event, Write
@@ -168,10 +168,7 @@ class Runner:
         """Receive an event that another thread has sent, unless the event's run has ended in the meantime."""
         run = getattr(event, "run", None)
         if run is None or run in self.functions.running:
-            try:
-                self.receive(event)
-            except Exception:  # no caller can catch this error, but the designer must see it
-                log.exception("refused a request from another thread: %s", short(event))
+            self.receive(event)
 
     def add_rule(self, rule: Rule[Any, Any]) -> None:
         """Add a rule to the engine's policy. Any thread may call this; the loop makes the new policy."""
