@@ -144,7 +144,8 @@ class _Hearing:
             return vouched
         stated = self.reader.facts()
         topics = {fact.topic for fact in stated if not fact.gone}
-        told = asks and (not seen.advised or self.reader.asks() or asks_for_words(seen))
+        found = recalled(self.reader, (*self.told, *self.talk.said), self.known) if asks else []
+        told = asks and (not seen.advised or found or self.reader.asks() or asks_for_words(seen))
         if told or "ask_everything" in self.acts:
             inquiry = self.inquiry()
             if self.talk.words and asks_to_repeat(seen):
@@ -153,7 +154,7 @@ class _Hearing:
                 asks, inquiry = False, None
             if inquiry and self.is_known(inquiry.facts[0].topic):
                 return inquiry
-            if found := recalled(self.reader, (*self.told, *self.talk.said), self.known):
+            if found:
                 return Meaning("asked_told", free=tuple(found))
             if self.talk.words and asks_for_words(self.seen):
                 return Meaning("asked_words", facts=inquiry.facts if inquiry else ())
@@ -294,7 +295,12 @@ class _Hearing:
             return None
         named = any(phrase.names for said in self.seen.statements for phrase in (said.object, *said.phrases))
         if "ask_everything" in self.acts and not named and self.of_speakers():
-            return Meaning("asked", (Fact(EVERYTHING),))
+            phrases = (phrase for said in self.seen.statements if said.question for phrase in said.phrases)
+            about = [phrase for phrase in phrases if phrase.preposition == "about"]
+            if topic := next(filter(None, map(self.reader.noun, about)), ""):  # "did I tell you about my sister"
+                return Meaning("asked", (Fact(topic),))
+            others = any(phrase.of("I") and WORDS["kin"] & {phrase.head} for phrase in about)
+            return Meaning("asked", (Fact("" if others else EVERYTHING),))
         wished = any(said.plan for said in self.seen.statements)  # "do you want to know my name"
         offered = wished and self.seen.question == nlp.QuestionWord.YES_NO  # "do you want to be my friend"
         if topic := self.pointed():
