@@ -14,7 +14,7 @@ from ravestate.modules.meta.nlp.answer import is_only_yes
 from . import kinds
 from .answers import spelled_out
 from .contrast import Correction, corrected_in, denied_in
-from .reading import PEOPLE, Reader
+from .reading import Reader
 from .recollection import asks_for_words, asks_to_repeat
 from .talk import CONFIRM, FORGET, Talk
 from .told import Told, recalled, told_in
@@ -113,7 +113,7 @@ class _Hearing:
         self.acts = {match.name for match in kinds.acts().match_all(seen.sentences) if match is not None}
         self.text = spelled_out(seen.tree.text)
         self.sum = any(map(str.isdigit, self.text))  # "no time, 12 x 3" wants a sum, which another module answers
-        self.named = self.topic in PEOPLE and any(tag.label == self.topic for tag in self.reader.tags)
+        self.answers = self.waits and any(tag.label == self.topic for tag in self.reader.tags)
         self.leave = "farewell" in seen.acts and not self.is_unsure("farewell")
         self.sorry = bool(SORROWS & set(seen.feelings))
         self.moved = bool(set(seen.feelings) - _CALM or {"joke", "praise", "play"} & set(seen.acts))
@@ -188,8 +188,8 @@ class _Hearing:
         return self.otherwise(aside)
 
     def is_unsure(self, act: str) -> bool:
-        """Return whether an act is rather the answer to a question for a name: *Rocky*."""
-        return self.named and self.seen.acts[act].score < 0.9
+        """Return whether an act is rather the answer to the agent's question: *Rocky*, *Bonn*."""
+        return self.answers and self.seen.acts[act].score < 0.9
 
     def otherwise(self, aside: bool) -> Meaning:
         """Return the meaning of an utterance that states no fact; `aside` says whether it asks, or says goodbye."""
