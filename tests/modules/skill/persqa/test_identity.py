@@ -148,3 +148,36 @@ def test_a_user_who_goes_on_talking_after_hello_is_not_interrupted(file: Path) -
         sim.say("what a nice day")
         sim.advance(2.5)
         assert "persqa:introduce" not in sim.fired
+
+
+@pytest.mark.parametrize(
+    "texts", [["bye", "I'm Peter"], ["goodbye", "now it's me, Peter"], ["this is Peter"], ["Peter here"]]
+)
+def test_another_name_after_a_farewell_or_for_who_is_here_begins_another_acquaintance(
+    file: Path, look: Look, texts: list[str]
+) -> None:
+    with agent(file) as sim:
+        sim.say("I'm Anna")
+        sim.say("I live in Graz")
+        for text in texts[:-1]:
+            sim.say(text)
+        assert meant(answers(sim, texts[-1]), "learned_name")
+        assert (name_of(sim), dict(sim.read(persqa.facts))) == ("Peter", {})
+    assert look() == {"Anna": {"lives_in": ["Graz"]}, "Peter": {}}
+
+
+@pytest.mark.parametrize("text", ["no, I'm Peter", "no, this is Peter", "sorry, Peter here", "this is Annah"])
+def test_a_corrected_name_keeps_the_facts(file: Path, text: str) -> None:
+    with agent(file) as sim:
+        sim.say("I'm Anna")
+        sim.say("I live in Graz")
+        assert meant(answers(sim, text), "renamed")
+        assert dict(sim.read(persqa.facts)) == {"home": ("Graz",)}
+
+
+def test_a_bare_answer_to_a_question_is_no_farewell(file: Path) -> None:
+    with agent(file, hibye) as sim:
+        sim.say("I'm Anna")
+        assert meant(answers(sim, "where do I live?"), "recall_unknown")
+        assert meant(answers(sim, "Bonn"), "learned_home")
+        assert not sim.read(persqa.talk).quiet

@@ -181,6 +181,8 @@ def _told(meaning: Meaning, user: Acquaintance, now: float, chance: random.Rando
     if not meaning.facts and not meaning.free and not meaning.gone:
         return Response(None, user)
     name = next((fact.values[0] for fact in meaning.facts if fact.topic == NAME and not fact.gone), None)
+    if meaning.another:  # the user before has left
+        user = Acquaintance(None, {}, Talk(spoke=now, turns=1))
     before = user
     news = learn(user.facts, meaning.facts)
     gone = {one.key for one in meaning.gone}

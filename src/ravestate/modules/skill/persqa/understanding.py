@@ -10,16 +10,18 @@ from typing import Literal
 from ravestate.language.feelings import SORROWS
 from ravestate.modules import nlp
 from ravestate.modules.meta.nlp.answer import is_only_yes
+from ravestate.modules.meta.nlp.introduction import introductions_in
 
 from . import kinds
-from .answers import spelled_out
+from .answers import spelled_out, without_opening
+from .changes import is_similar
 from .contrast import Correction, corrected_in, denied_in
 from .reading import Reader
 from .recollection import asks_for_words, asks_to_repeat
 from .talk import CONFIRM, FORGET, Talk
 from .told import Told, recalled, told_in
 from .topics import NAME, NOUNS, TOPICS, WORDS, Fact, is_topic, touched_by
-from .wording import Facts, among
+from .wording import Facts, alike, among, same
 
 EVERYTHING = "everything"
 """The value of `Fact.topic` that stands for all topics."""
@@ -71,6 +73,8 @@ class Meaning:
     """The topics that the user's words touch."""
     person: str = ""
     """The topic of the relative whom the user mentions."""
+    another: bool = False
+    """Whether the name that the user tells is another person's, and not the right spelling of the known name."""
     said: tuple[Told, ...] = ()
     words: tuple[str, ...] = ()
     """The sentences of the utterance. If the kind is ``asked_words``: the sentence that answers the question."""
@@ -95,8 +99,9 @@ def understand(
     if meaning.kind in ("told", "corrected", "nothing") and (denied := denied_in(said, (*hearing.told, *talk.said))):
         kind = "told" if meaning.kind == "nothing" else meaning.kind
         meaning = replace(meaning, kind=kind, gone=(*meaning.gone, *denied))
+    another = any(map(hearing.is_another, (fact for fact in meaning.facts if fact.topic == NAME)))
     busy = not meaning.facts and (seen.question is not None or len(seen.text.split()) > BRIEF)
-    return replace(meaning, busy=busy, **noted)
+    return replace(meaning, busy=busy, another=another, **noted)
 
 
 class _Hearing:
@@ -215,6 +220,17 @@ class _Hearing:
     def is_name(self, values: tuple[str, ...]) -> bool:
         """Return whether these values are the name by which the agent knows the user."""
         return all(among(value, self.known.get(NAME, ())) for value in values)
+
+    def is_another(self, name: Fact) -> bool:
+        """Return whether a name begins another acquaintance: after a farewell, or with words such as *Peter here*.
+
+        A correction does not: *no, I'm Peter*."""
+        known, said = self.known.get(NAME, ()), " ".join(name.values)
+        denied = name.gone or self.seen.contrasts or self.seen.yesno.no or "contradiction" in self.acts
+        if not known or denied or alike(said, known) or without_opening(self.text):
+            return False
+        here = any(one.present and same(one.name, said) for one in introductions_in(self.seen.tree))
+        return self.talk.parted or (here and not any(is_similar(said, one) for one in known))
 
     def denies_name(self) -> bool:
         """Return whether the user says that they are not the person that the agent takes them for."""
