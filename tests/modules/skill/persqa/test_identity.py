@@ -181,3 +181,43 @@ def test_a_bare_answer_to_a_question_is_no_farewell(file: Path) -> None:
         assert meant(answers(sim, "where do I live?"), "recall_unknown")
         assert meant(answers(sim, "Bonn"), "learned_home")
         assert not sim.read(persqa.talk).quiet
+
+
+@pytest.mark.parametrize(
+    ("first", "again"),
+    [
+        (["the name's O'Hara, Sinéad O'Hara"], "it's Sinéad"),
+        (["I'm Mo", "no, my name is Mohammed"], "it's Mo"),
+        (["I'm Sam"], "my name is Samantha Reed"),
+    ],
+)
+def test_a_person_who_returns_under_a_part_or_another_form_of_their_name_is_asked_a_question(
+    file: Path, look: Look, first: list[str], again: str
+) -> None:
+    with agent(file, confirm=True) as sim:
+        for text in (*first, "I live in Leeds"):
+            sim.say(text)
+        name = name_of(sim)
+    with agent(file, confirm=True) as sim:
+        assert meant(answers(sim, again), "vouch_home")
+        assert meant(answers(sim, "in Leeds"), "welcome_back")
+        assert name_of(sim) == name
+    with agent(file, confirm=True) as sim:
+        sim.say(again)
+        assert meant(answers(sim, "in Ghent"), "namesake")
+        assert dict(sim.read(persqa.facts)) == {}
+        assert name_of(sim) != name
+
+
+def test_a_short_form_with_a_known_fact_is_recognised(file: Path, look: Look) -> None:
+    for text in ("I'm Mohammed and I live in Leeds", "I'm Mo and I live in Leeds"):
+        with agent(file, confirm=True) as sim:
+            sim.say(text)
+    assert look() == {"Mohammed": {"lives_in": ["Leeds"]}}
+
+
+def test_paul_is_not_taken_for_paula(file: Path) -> None:
+    with agent(file, confirm=True) as sim:
+        sim.say("I'm Paula and I live in Leeds")
+    with agent(file, confirm=True) as sim:
+        assert meant(answers(sim, "I'm Paul"), "learned_name")

@@ -158,7 +158,9 @@ class Reader:
         return [value for one in texts if (value := self.value(topic, one))]
 
     def _whole(self, tag: Tag) -> str:
-        """Return the words of a tag, with the article of a place or an organisation: *the choir*."""
+        """Return the words of a tag, with the article of a place or an organisation: *the choir*.
+
+        The name in *the name's Bond, James Bond* is *James Bond*."""
         text = self.tree.text
         found = re.search(r"\b(?:the|an?) $", text[: tag.start], re.IGNORECASE)
         articled = tag.label in TOPICS and TOPICS[tag.label].kind in ("place", "organisation")
