@@ -191,3 +191,14 @@ def test_a_question_about_a_relative_who_was_not_mentioned_is_not_answered_with_
         assert meant(answers(sim, "did I tell you about my sister?"), "recall_unknown")
         assert meant(answers(sim, "did I tell you about my aunt?"), "recall_not")
         assert "Max" in answers(sim, "did I tell you about my brother?")
+
+
+def test_a_sister_in_law_is_no_sister_and_can_be_forgotten_in_a_later_session(file: Path, look: Look) -> None:
+    with agent(file) as sim:
+        sim.say("I'm Anna")
+        sim.say("my sister-in-law Petra lives in Lyon")
+        assert dict(sim.read(persqa.facts)) == {}
+    with agent(file) as sim:
+        sim.say("I'm Anna")
+        assert meant(answers(sim, "forget my sister-in-law"), "strike")
+    assert look() == {"Anna": {}}

@@ -146,6 +146,11 @@ def retold_with(one: Told, right: str) -> Told:
     return replace(one, object=right, text=text)
 
 
+def is_about(one: Told, phrase: str) -> bool:
+    """Return whether a statement begins with the user's words for somebody: *your boss Ann sings*, for *my boss*."""
+    return re.match(rf"{re.escape(_returned(phrase))}(?![\w-])", one.text, re.IGNORECASE) is not None
+
+
 def recalled(reader: Reader, told: Iterable[Told], known: Facts) -> list[Told]:
     """Return the statements that answer the user's question: *what does Jonas play*, *who is getting married?*."""
     told, kind = _latest(told), reader.seen.question
@@ -379,9 +384,8 @@ def _retold(reader: Reader, said: nlp.Statement) -> str:
     ]
     words = [top, *(word for child in parts for word in tree.subtree(child))]
     text = spelled_out(tree.phrase(words))
-    if said.subject.text.lower().split()[-1:] and said.subject.text.lower().split()[-1] not in re.findall(
-        r"\w+", text.lower()
-    ):
+    last = said.subject.text.lower().split()[-1:]
+    if last and not {*last} & {*re.findall(r"\w+", text.lower()), *text.lower().split()}:
         text = f"{said.subject.text} {text}"
     return _returned(text)
 

@@ -19,7 +19,7 @@ from .contrast import Correction, corrected_in, denied_in
 from .reading import Reader
 from .recollection import asks_for_words, asks_to_repeat
 from .talk import CONFIRM, FORGET, Talk
-from .told import Told, recalled, told_in
+from .told import Told, is_about, recalled, told_in
 from .topics import NAME, NOUNS, TOPICS, WORDS, Fact, is_topic, touched_by
 from .wording import Facts, alike, among, same
 
@@ -313,7 +313,9 @@ class _Hearing:
         if "ask_everything" in self.acts and not named and self.of_speakers():
             phrases = (phrase for said in self.seen.statements if said.question for phrase in said.phrases)
             about = [phrase for phrase in phrases if phrase.preposition == "about"]
-            if topic := next(filter(None, map(self.reader.noun, about)), ""):  # "did I tell you about my sister"
+            if topic := next(
+                (topic for one in about if (topic := self.reader.noun(one))), ""
+            ):  # "did I tell you about my sister"
                 return Meaning("asked", (Fact(topic),))
             others = any(phrase.of("I") and WORDS["kin"] & {phrase.head} for phrase in about)
             return Meaning("asked", (Fact("" if others else EVERYTHING),))
@@ -369,10 +371,13 @@ class _Hearing:
             facts = facts or self.reader.facts() or [fact for fact in [self.reader.asks()] if fact]
             names = {object.text or "-", *(name for f in facts for name in f.values or self.known.get(f.topic, ()))}
             again = {one.key for one in told_in(self.reader)[0]}
+            mine = object.of("I")
             free = tuple(
-                one for one in (*self.told, *self.talk.said) if {one.subject, one.object} & names or one.key in again
+                one
+                for one in (*self.told, *self.talk.said)
+                if {one.subject, one.object} & names or one.key in again or (mine and is_about(one, object.text))
             )
-            if facts or free or object.of("I") or any(one.subject.person == "I" for one in self.seen.statements):
+            if facts or free or mine or any(one.subject.person == "I" for one in self.seen.statements):
                 return Meaning("strike", tuple(facts), free=free)
         match = self.seen.act("forget_me")
         return Meaning("forget") if match and match.score > 0.7 and not wishes else None
