@@ -95,6 +95,12 @@ def understand(
     said = told_in(hearing.reader, talk.said)[1]
     words = tuple(one for one in seen.sentences if not one.rstrip().endswith("?")) if seen.question is None else ()
     meaning = hearing.meaning()
+    asked = [understand(one, talk, known, now, within, hearing.told) for one in seen.questions]
+    if asked and all(
+        one.kind.startswith("asked") and (one.facts or one.free) for one in asked
+    ):  # "what is my name and where do I live?"
+        facts = (fact for one in asked for fact in one.facts)
+        meaning = replace(asked[0], kind="asked", facts=tuple(facts), free=tuple(t for one in asked for t in one.free))
     noted = {"touched": touched, "person": person, "said": tuple(said), "words": words, "moved": hearing.moved}
     if meaning.kind in ("told", "corrected", "nothing") and (denied := denied_in(said, (*hearing.told, *talk.said))):
         kind = "told" if meaning.kind == "nothing" else meaning.kind
