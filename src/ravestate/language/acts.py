@@ -7,6 +7,7 @@ from collections.abc import Collection, Mapping, Sequence
 
 from .contractions import word_set
 from .feelings import clauses
+from .lexicon import loaded_lexicon
 from .matcher import Match, Matcher, bundled_matcher
 from .nonsense import is_nonsense
 from .normal import normalise, plain
@@ -104,9 +105,15 @@ def _read(sentences: Sequence[str]) -> list[_Sentence]:
 
 
 def _taken_back(matcher: Matcher, found: Match | None) -> bool:
-    """Return whether a negation cancels a wish. "Don't talk" stays a wish, because its example is also negative."""
-    if found is None or found.name not in WISHES or plain(found.text) in matcher.exact:
+    """Return whether a text is no wish: it is a mere name ("Bonn"), or a negation cancels the wish.
+
+    "Don't talk" stays a wish, because its example is also negative.
+    """
+    if found is None or found.name not in WISHES or (said := plain(found.text)) in matcher.exact:
         return False
+    lexicon = loaded_lexicon()
+    if lexicon is not None and lexicon.name(said) != said:
+        return True
     asserted = _NEGATION.sub("", found.text, count=1)
     wish = matcher.match(asserted) if asserted != found.text else None
     return wish is not None and wish.name == found.name and not _NEGATION.search(wish.example)

@@ -1,11 +1,12 @@
 """Turn typed English into its normal form: correct written English, with offsets into the original.
 
-A well-written sentence stays as it is. Other sentences are mended in three steps:
+A well-written sentence stays as it is. Other sentences are mended in four steps:
 
 1. words: write out the short forms in `WRITTEN`, drop letters repeated for emphasis, and mend typing errors and the
    capitals of names with the `Lexicon`;
 2. punctuation: add a space after a comma, a comma after an interjection, a full stop before a question;
-3. the start and end of each sentence: add a capital, and a full stop or question mark.
+3. the start and end of each sentence: add a capital, and a full stop or question mark;
+4. a slip of the tongue: leave out the words that the user takes back, as in *I live in Bern, I mean Bonn*.
 """
 
 from __future__ import annotations
@@ -20,6 +21,7 @@ from typing import Any
 
 from .contractions import CONTRACTIONS, WRITTEN, word_set
 from .lexicon import SHORTEST, Lexicon, loaded_lexicon
+from .slips import slips
 
 
 @dataclass(frozen=True, slots=True)
@@ -208,6 +210,8 @@ def _normalised(text: str, names: tuple[tuple[str, str], ...], lexicon: Lexicon 
             if again.text == normal.text:
                 break
             normal = Normal(again.text, text, tuple(normal.origin[place] for place in again.origin))
+    for start, end in slips(normal.text):
+        return Normal(normal.text[:start] + normal.text[end:], text, normal.origin[:start] + normal.origin[end:])
     return normal
 
 

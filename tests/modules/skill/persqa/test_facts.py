@@ -231,3 +231,20 @@ def test_after_the_user_quits_their_job_the_agent_says_that_they_have_no_job(fil
         sim.say("I work as a waiter")
         sim.say("I quit my job")
         assert "no job" in answers(sim, "what is my job?").lower()
+
+
+@pytest.mark.parametrize(
+    ("text", "parts"),
+    [
+        ("What is my name and where do I live?", ["your name is Anna", "you live in Graz"]),
+        ("where do I live? and who is my sister?", ["you live in Graz", "your sister is Eva"]),
+        ("where do I live and what does Jonas play?", ["you live in Graz", "Jonas plays the violin"]),
+        ("how old am I and where do I live?", ["you live in Graz"]),
+    ],
+)
+def test_all_questions_of_an_utterance_are_answered(file: Path, text: str, parts: list[str]) -> None:
+    with agent(file, knower()) as sim:
+        for told in ("I'm Anna", "I live in Graz", "my sister is called Eva", "Jonas plays the violin"):
+            sim.say(told)
+        said = answers(sim, text)
+        assert all(part in said for part in parts), said

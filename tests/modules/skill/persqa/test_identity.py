@@ -148,3 +148,76 @@ def test_a_user_who_goes_on_talking_after_hello_is_not_interrupted(file: Path) -
         sim.say("what a nice day")
         sim.advance(2.5)
         assert "persqa:introduce" not in sim.fired
+
+
+@pytest.mark.parametrize(
+    "texts", [["bye", "I'm Peter"], ["goodbye", "now it's me, Peter"], ["this is Peter"], ["Peter here"]]
+)
+def test_another_name_after_a_farewell_or_for_who_is_here_begins_another_acquaintance(
+    file: Path, look: Look, texts: list[str]
+) -> None:
+    with agent(file) as sim:
+        sim.say("I'm Anna")
+        sim.say("I live in Graz")
+        for text in texts[:-1]:
+            sim.say(text)
+        assert meant(answers(sim, texts[-1]), "learned_name")
+        assert (name_of(sim), dict(sim.read(persqa.facts))) == ("Peter", {})
+    assert look() == {"Anna": {"lives_in": ["Graz"]}, "Peter": {}}
+
+
+@pytest.mark.parametrize("text", ["no, I'm Peter", "no, this is Peter", "sorry, Peter here", "this is Annah"])
+def test_a_corrected_name_keeps_the_facts(file: Path, text: str) -> None:
+    with agent(file) as sim:
+        sim.say("I'm Anna")
+        sim.say("I live in Graz")
+        assert meant(answers(sim, text), "renamed")
+        assert dict(sim.read(persqa.facts)) == {"home": ("Graz",)}
+
+
+def test_a_bare_answer_to_a_question_is_no_farewell(file: Path) -> None:
+    with agent(file, hibye) as sim:
+        sim.say("I'm Anna")
+        assert meant(answers(sim, "where do I live?"), "recall_unknown")
+        assert meant(answers(sim, "Bonn"), "learned_home")
+        assert not sim.read(persqa.talk).quiet
+
+
+@pytest.mark.parametrize(
+    ("first", "again"),
+    [
+        (["the name's O'Hara, Sinéad O'Hara"], "it's Sinéad"),
+        (["I'm Mo", "no, my name is Mohammed"], "it's Mo"),
+        (["I'm Sam"], "my name is Samantha Reed"),
+    ],
+)
+def test_a_person_who_returns_under_a_part_or_another_form_of_their_name_is_asked_a_question(
+    file: Path, look: Look, first: list[str], again: str
+) -> None:
+    with agent(file, confirm=True) as sim:
+        for text in (*first, "I live in Leeds"):
+            sim.say(text)
+        name = name_of(sim)
+    with agent(file, confirm=True) as sim:
+        assert meant(answers(sim, again), "vouch_home")
+        assert meant(answers(sim, "in Leeds"), "welcome_back")
+        assert name_of(sim) == name
+    with agent(file, confirm=True) as sim:
+        sim.say(again)
+        assert meant(answers(sim, "in Ghent"), "namesake")
+        assert dict(sim.read(persqa.facts)) == {}
+        assert name_of(sim) != name
+
+
+def test_a_short_form_with_a_known_fact_is_recognised(file: Path, look: Look) -> None:
+    for text in ("I'm Mohammed and I live in Leeds", "I'm Mo and I live in Leeds"):
+        with agent(file, confirm=True) as sim:
+            sim.say(text)
+    assert look() == {"Mohammed": {"lives_in": ["Leeds"]}}
+
+
+def test_paul_is_not_taken_for_paula(file: Path) -> None:
+    with agent(file, confirm=True) as sim:
+        sim.say("I'm Paula and I live in Leeds")
+    with agent(file, confirm=True) as sim:
+        assert meant(answers(sim, "I'm Paul"), "learned_name")

@@ -23,6 +23,24 @@ TOLD = [
     ("my sister Rosa lives in Antwerp", "where does my sister live?", "your sister Rosa lives in Antwerp"),
     ("my mother works at a school", "where does my mother work?", "your mother works at a school"),
 ]
+ASKED = [
+    (["I hate fish"], "do I like fish?", "you hate fish"),
+    (["my flatmate Jon is allergic to nuts"], "is Jon allergic to nuts?", "your flatmate Jon is allergic to nuts"),
+    (["I play chess on Sundays"], "when do I play chess?", "you play chess on Sundays"),
+    (["Ines lives in Rome", "Ines moved to Vienna"], "where does Ines live?", "Ines moved to Vienna"),
+    (
+        ["I live with my mother in Porto", "my mother lives in Braga actually"],
+        "where does my mother live?",
+        "your mother lives in Braga actually",
+    ),
+    (["my mother is called Teresa", "her sister is Lucia"], "who is Lucia?", "Teresa's sister is Lucia"),
+    (["my mother is kind", "her sister is Lucia"], "who is Lucia?", "your mother's sister is Lucia"),
+]
+NOT_TOLD = [
+    (["my flatmate Jon is allergic to nuts"], "am I allergic to nuts?"),
+    (["my dog is called Bello"], "how is your dog?"),
+    (["I wear glasses"], "what do I wear?"),
+]
 
 
 @pytest.mark.parametrize(("told", "question", "answer"), TOLD, ids=[told for told, _, _ in TOLD])
@@ -146,3 +164,41 @@ def test_a_question_for_a_person_is_answered_with_their_name(relative: str) -> N
         said += told_in(Reader(analyse(text, pipeline(""))), said)[1]
     found = recalled(Reader(analyse(f"Who is my {relative}?", pipeline(""))), said, {})
     assert [one.text for one in found] == [f"your {relative} Karl plays the drums"]
+
+
+@pytest.mark.parametrize(("told", "question", "answer"), ASKED, ids=[question for _, question, _ in ASKED])
+def test_the_latest_statement_about_the_subject_of_a_question_answers_it(
+    told: list[str], question: str, answer: str
+) -> None:
+    assert [one.text for one in remembered(told, question)] == [answer]
+
+
+@pytest.mark.parametrize(("told", "question"), NOT_TOLD, ids=[question for _, question in NOT_TOLD])
+def test_a_statement_about_another_subject_answers_no_question(told: list[str], question: str) -> None:
+    assert remembered(told, question) == []
+
+
+def remembered(told: list[str], question: str) -> list[Told]:
+    said: list[Told] = []
+    for one in told:
+        said += told_in(Reader(analyse(one, pipeline(""))), said)[1]
+    return recalled(Reader(analyse(question, pipeline(""))), said, {})
+
+
+def test_a_question_about_a_relative_who_was_not_mentioned_is_not_answered_with_everything(file: Path) -> None:
+    with agent(file) as sim:
+        sim.say("I have a brother called Max")
+        assert meant(answers(sim, "did I tell you about my sister?"), "recall_unknown")
+        assert meant(answers(sim, "did I tell you about my aunt?"), "recall_not")
+        assert "Max" in answers(sim, "did I tell you about my brother?")
+
+
+def test_a_sister_in_law_is_no_sister_and_can_be_forgotten_in_a_later_session(file: Path, look: Look) -> None:
+    with agent(file) as sim:
+        sim.say("I'm Anna")
+        sim.say("my sister-in-law Petra lives in Lyon")
+        assert dict(sim.read(persqa.facts)) == {}
+    with agent(file) as sim:
+        sim.say("I'm Anna")
+        assert meant(answers(sim, "forget my sister-in-law"), "strike")
+    assert look() == {"Anna": {}}

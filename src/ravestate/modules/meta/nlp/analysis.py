@@ -25,6 +25,7 @@ from .inquiry import kinds, question_of
 from .introduction import Introduction, introductions_in
 from .pipeline import Pipeline
 from .question_word import QuestionWord
+from .questions import questions_in
 from .reading import Reading
 from .repair import repaired
 from .statement import Statement, Triple
@@ -94,6 +95,9 @@ class Analysis:
 
     move: Move | None = None
     """The move that a good listener makes next, such as to rejoice, console or advise."""
+
+    questions: tuple[Analysis, ...] = ()
+    """The analyses of the single questions, if the utterance asks several; otherwise empty."""
 
     intents: Mapping[str, Match] = field(default_factory=dict[str, Match])
     """Name of the signal of a designer's intent (`nlp.intent`) → the best match of a sentence for this intent."""
@@ -196,6 +200,7 @@ def analyse(
         feelings=feelings(sentences, names),
         asks=_by_name(bundled_matcher("asks").match_all(sentences)),
         move=bundled_moves().move(meant, asks=question is not None or "?" in text),
+        questions=tuple(analyse(one, pipeline, names, users) for one in questions_in(tree)),
         intents=_by_name(designed.match_all(sentences or (text,)), ":") if designed else {},
     )
 

@@ -30,8 +30,8 @@ _FRAMES = [
     for frame in (
         rf"{_OPENERS}(?P<sure>my name(?: is|['’]s)|(?:you (?:can|may) )?call me|i(?: am|['’]m) called) {_NAME.pattern}{_CLOSERS}{_BESIDE}",
         rf"{_OPENERS}(?P<sure>name['’]s|(?-i:[Mm]y name(?= [A-Z]))) {_NAME.pattern}{_CLOSERS}{_BESIDE}",
-        rf"{_OPENERS}(?:(?P<pointing>{_IT_IS})(?: me)?|i(?: am|['’]m)) {_NAME.pattern}{_CLOSERS}{_BESIDE}",
-        rf"{_OPENERS}{_NAME.pattern} (?:again )?here(?: again)?{_BESIDE}",
+        rf"{_OPENERS}(?:(?P<pointing>{_IT_IS})(?P<me> me)?|i(?: am|['’]m)) {_NAME.pattern}{_CLOSERS}{_BESIDE}",
+        rf"{_OPENERS}{_NAME.pattern} (?P<here>(?:again )?here(?: again)?){_BESIDE}",
     )
 ]
 _ME = re.compile(rf"{_OPENERS}(?:{_IT_IS})(?: only| just)? me{_CLOSERS}", re.IGNORECASE)
@@ -54,6 +54,8 @@ class Introduction:
     """Whether the words around the name can only introduce a name: *my name is*, *call me*."""
     pointing: bool = False
     """Whether the words may also be about another person or thing: *it's Ilka*, *this is Ilka*."""
+    present: bool = False
+    """Whether the words say who is here: *it's me, Ilka*, *this is Ilka*, *Ilka here*."""
     late: bool = False
     """Whether a verb stands before the introduction: *my dog isn't Rex, it's Max*."""
 
@@ -84,12 +86,15 @@ def introductions_in(tree: Tree) -> Iterator[Introduction]:
         if "?" in mark and not before:
             continue
         found = next(filter(None, (frame.fullmatch(piece) for frame in _FRAMES)), None)
-        found = found or (_NAME.fullmatch(piece) if _ME.fullmatch(before) else None)
+        me = _ME.fullmatch(before)
+        found = found or (_NAME.fullmatch(piece) if me else None)
         before = piece
         if found is None or _ME.fullmatch(piece):
             continue
         told, others = found.groupdict(), [at for at in range(len(pieces)) if at != place and pieces[at]]
-        kept = (at for at in others if not _POLITE.fullmatch(pieces[at]))
+        kept = (at for at in others if not (_POLITE.fullmatch(pieces[at]) or _ME.fullmatch(pieces[at])))
         rest = "".join(pieces[at] + (marks[at] if at + 1 != place else " ") for at in kept).strip(" ,")
         late = any(word.pos in VERBAL and word.start < starts[place] for word in tree.words)
-        yield Introduction(told["name"], rest, bool(told.get("sure")), bool(told.get("pointing")), late)
+        pointing = told.get("pointing") or ""
+        present = bool(me or told.get("me") or told.get("here") or pointing.lower() == "this is")
+        yield Introduction(told["name"], rest, bool(told.get("sure")), bool(pointing), present, late)

@@ -71,7 +71,7 @@ def phrase_of(tree: Tree, head: Word, words: list[Word] | None = None) -> Phrase
         first = tree.head(first)
     return Phrase(
         tree.phrase(noun_phrase(tree, head) if words is None else words),
-        head="" if noun is None else noun.lemma.lower() if noun.pos == "NOUN" else noun.low,
+        head="" if noun is None else f"{noun.lemma.lower() if noun.pos == 'NOUN' else noun.low}{_in_law(tree, noun)}",
         names=tuple(_names_in(tree, head)),
         owner=owner and phrase_of(tree, owner, [word for word in noun_phrase(tree, owner) if word.dep != "case"]),
         amount=_amount(tree, head),
@@ -148,11 +148,18 @@ def _belongs(tree: Tree, child: Word, head: Word) -> bool:
 def _with_hyphens(tree: Tree, kept: list[Word]) -> list[Word]:
     """Add words joined by hyphens: the pipeline splits *well-known* into three."""
     indices = {word.index for word in kept}
+    for word in kept:
+        indices |= {word.index + step for step in range(1, 5) if _in_law(tree, word)}
     for index in range(len(tree.words) - 1, 1, -1):
         hyphen = tree.words[index - 1]
         if index in indices and hyphen.low in "-–" and hyphen.end == tree.words[index].start:
             indices |= {index - 1, index - 2}
     return [tree.words[index] for index in sorted(indices)]
+
+
+def _in_law(tree: Tree, noun: Word) -> str:
+    """Return the rest of *sister-in-law*, which the pipeline splits; empty after other nouns."""
+    return "-in-law" if tree.text[noun.end :].lower().startswith("-in-law") else ""
 
 
 def _names_in(tree: Tree, head: Word) -> list[str]:

@@ -14,7 +14,7 @@ from .answering import Answer, together
 from .following import answer_in
 from .names import Settings, found, module, thread
 from .places import answerer_of
-from .question import not_asked, parsed, questions_in
+from .question import not_asked, parsed
 from .thread import KEPT, REMEMBERED, Turn, overheard, refers
 from .wording import intent_of, wording_rule
 
@@ -55,7 +55,8 @@ def find(ctx: rs.RuleContext) -> rs.Resign | None:
         return rs.Resign("nothing was analysed")
     turns = tuple(turn for turn in ctx[thread] if ctx.now - turn.at <= REMEMBERED)
     answers, new, reasons = list[Answer](), list[Turn](), list[str]()
-    for heard in questions_in(parsed(analysis.tree, analysis.entities, analysis.question)):
+    for asked in analysis.questions or (analysis,):
+        heard = parsed(asked.tree, asked.entities, asked.question)
         if reason := not_asked(heard, analysis):
             reasons.append(reason)
             continue

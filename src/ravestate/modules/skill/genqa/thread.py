@@ -10,11 +10,12 @@ from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass, replace
 
 from ravestate.modules.meta.nlp import QuestionWord
+from ravestate.modules.meta.nlp.questions import FINITE, WH
 from ravestate.modules.meta.nlp.tree import Tree, Word
 
 from .answering import Answer
 from .lexicon import words_of
-from .question import FINITE, PRONOUNS, SEXES, WH, Parse, is_name, parse
+from .question import PRONOUNS, SEXES, Parse, is_name, parse
 
 NUMBERS = ("DATE", "TIME", "CARDINAL", "QUANTITY", "MONEY", "PERCENT", "ORDINAL")
 """The labels of entities that are numbers, not names."""

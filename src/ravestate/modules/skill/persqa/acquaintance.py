@@ -52,20 +52,21 @@ class Acquaintance:
         return Acquaintance(found, merged(remembered, self.facts), talk, free)
 
     def doubted(self, graph: ontology.Graph) -> Acquaintance:
-        """Return the user. If memory knows facts about a person of the same name, set `Talk.doubt`."""
+        """Return the user. If memory knows facts about a person who may have this name, set `Talk.doubt`."""
         if self.talk.met or self.who is None:
             return self
-        found = records.named(graph, self.who[NAME])
-        facts = records.known(graph, found) if found is not None else {}
+        people = [records.named(graph, self.who[NAME]), *records.candidates(graph, self.who[NAME])]
+        person = next(filter(None, people), None)
+        facts = records.known(graph, person) if person is not None else {}
         if any(among(value, facts.get(topic, ())) for topic, values in self.facts.items() for value in values):
-            return self  # the user has just told a fact that memory knows about this person
+            return replace(self, who=person)  # the user has just told a fact that memory knows about this person
         topics = sorted((topic for topic in facts if facts[topic]), key=lambda topic: not TOPICS[topic].asked)
         return replace(self, talk=replace(self.talk, doubt=topics[0] if topics else ""))
 
     def settled(self, graph: ontology.Graph, answer: tuple[str, ...]) -> Acquaintance:
         """Return the user as the person in memory who has this name and fits `answer`, or else as a new person."""
         assert self.who is not None
-        for person in records.namesakes(graph, self.who[NAME]):
+        for person in records.candidates(graph, self.who[NAME]):
             values = records.known(graph, person).get(self.talk.doubt, ())
             if any(alike(value, values) for value in answer):
                 return replace(self, who=person, talk=replace(self.talk, doubt="")).recall(graph)

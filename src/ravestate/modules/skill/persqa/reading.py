@@ -158,8 +158,13 @@ class Reader:
         return [value for one in texts if (value := self.value(topic, one))]
 
     def _whole(self, tag: Tag) -> str:
-        """Return the words of a tag, with the article of a place or an organisation: *the choir*."""
+        """Return the words of a tag, with the article of a place or an organisation: *the choir*.
+
+        The name in *the name's Bond, James Bond* is *James Bond*."""
         text = self.tree.text
+        full = re.match(rf",\s+((?:[\w'’-]+\s+){{1,2}}{re.escape(tag.text)})(?!\w)", text[tag.end :])
+        if tag.label == NAME and full:
+            return full[1]
         found = re.search(r"\b(?:the|an?) $", text[: tag.start], re.IGNORECASE)
         articled = tag.label in TOPICS and TOPICS[tag.label].kind in ("place", "organisation")
         return f"{found[0]}{tag.text}" if found and articled and text[tag.start : tag.end] == tag.text else tag.text

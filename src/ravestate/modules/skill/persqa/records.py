@@ -8,10 +8,12 @@ from ravestate.modules import ontology
 
 from .told import Told
 from .topics import NAME, TOPICS, about, in_order
-from .wording import Facts, among
+from .wording import Facts, alike, among, same
 
 REMARK = "has_told"
 """The relation from a person to their free statements."""
+LEFT_OUT = 2
+"""The minimum number of letters that a short form leaves out: *Mo* is short for *Mohammed*, but *Paul* not for *Paula*."""
 MOST = 200
 """The maximum number of free statements that memory keeps for a person."""
 
@@ -25,6 +27,24 @@ def named(graph: ontology.Graph, name: str) -> ontology.Node | None:
 def namesakes(graph: ontology.Graph, name: str) -> list[ontology.Node]:
     """Return all people of this name, oldest first."""
     return graph.find("Person", {"name": name})
+
+
+def candidates(graph: ontology.Graph, name: str) -> list[ontology.Node]:
+    """Return the people about whom memory has facts, and who may have this name. Exact namesakes come first."""
+    people = (person for person in graph.find("Person", {}) if may_be(name, person.get("name") or ""))
+    return sorted((one for one in people if known(graph, one)), key=lambda person: not same(name, person["name"]))
+
+
+def may_be(name: str, other: str) -> bool:
+    """Return whether two names may be one person's: one is a short form of the other, or a part of it.
+
+    Example:
+        >>> may_be("Mo", "Mohammed"), may_be("Sinéad", "Sinéad O'Hara"), may_be("Paul", "Paula")
+        (True, True, False)
+    """
+    shorter, longer = sorted((name.casefold(), other.casefold()), key=len)
+    short = longer.startswith(shorter) and len(longer) - len(shorter) >= LEFT_OUT
+    return bool(shorter) and (short or alike(name, [other]))
 
 
 def has_talked(graph: ontology.Graph, person: ontology.Node) -> bool:

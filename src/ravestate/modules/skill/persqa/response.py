@@ -17,7 +17,7 @@ from .acquaintance import Acquaintance
 from .profile import News, learn, told_apart
 from .talk import CONFIRM, FORGET, LONGEST, TRIES, Talk
 from .told import Told
-from .topics import NAME, TOPICS, WORDS, Fact, in_order
+from .topics import NAME, TOPICS, WORDS, Fact, in_order, is_topic
 from .understanding import EVERYTHING, Meaning, is_idle
 from .wording import alike, among, clauses, joined, learned, memorable, same, say, stating, without
 
@@ -92,6 +92,8 @@ def respond_to(
             return Response(say(meaning.kind, user.known), _closing(heard, meaning.topic))
         case "mentioned":
             return _ask(meaning.topic, "ask_relative", heard, now)
+        case "asked" if len(meaning.facts) + len(meaning.free) > 1:
+            return _asked_several(meaning, heard, now)
         case "asked":
             return _asked(meaning.facts[0], heard, now)
         case "strike":
@@ -181,6 +183,8 @@ def _told(meaning: Meaning, user: Acquaintance, now: float, chance: random.Rando
     if not meaning.facts and not meaning.free and not meaning.gone:
         return Response(None, user)
     name = next((fact.values[0] for fact in meaning.facts if fact.topic == NAME and not fact.gone), None)
+    if meaning.another:  # the user before has left
+        user = Acquaintance(None, {}, Talk(spoke=now, turns=1))
     before = user
     news = learn(user.facts, meaning.facts)
     gone = {one.key for one in meaning.gone}
@@ -324,6 +328,17 @@ def _asked(fact: Fact, user: Acquaintance, now: float) -> Response:
     if topic in user.talk.closed and topic not in known:
         return Response(say("recall_declined", known), user)
     return _ask(topic, "recall_stranger" if topic == NAME else "recall_unknown", user, now)
+
+
+def _asked_several(meaning: Meaning, user: Acquaintance, now: float) -> Response:
+    """Answer the questions of an utterance together. If nothing is known, answer the first one alone."""
+    topics = [fact.topic for fact in meaning.facts if is_topic(fact.topic)]
+    topics += [other for topic in topics for other in TOPICS[topic].besides]
+    known = {topic: user.known[topic] for topic in topics if user.known.get(topic)}
+    told = [*([clauses(known)] if known else []), *(one.text for one in meaning.free)]
+    if not told:
+        return _asked(meaning.facts[0], user, now)
+    return Response(say("recall", user.known, fact=joined(told)), user)
 
 
 def _fits(asked: str, topic: str, values: tuple[str, ...]) -> bool:

@@ -124,8 +124,8 @@ async def listen(ctx: rs.RuleContext) -> None:
     if meaning.kind == "asked_words":
         words = await asyncio.to_thread(recollect, seen.text, before.talk.words)
         meaning = replace(meaning, words=(words,) if words else ())
-    moment = datetime.now(UTC)
-    meaning = replace(meaning, free=tuple(replace(one, by=before.name or "", at=moment) for one in meaning.free))
+    moment, by = datetime.now(UTC), "" if meaning.another else before.name or ""
+    meaning = replace(meaning, free=tuple(replace(one, by=by, at=moment) for one in meaning.free))
     response = respond_to(meaning, before, ctx.now, ctx.random, confirm=settings.confirm)
     keep(ctx, before, response.user)
     if response.errand is not None:

@@ -82,6 +82,8 @@ class Talk:
     """Whether the agent has told the user about the trouble."""
     quiet: bool = False
     """Whether the user has said goodbye."""
+    parted: bool = False
+    """Whether the user has said goodbye at any time. Another name then belongs to another person."""
     doubt: str = ""
     """A topic about which the user must first answer a question, to prove who they are; empty if there is no doubt."""
     wants_out: bool = False
@@ -126,6 +128,7 @@ class Talk:
         """Count an utterance of the user; `leave` means a goodbye."""
         question = replace(self.question, turns=self.question.turns + 1) if self.question and not leave else None
         counts = {"ignored": 0, "age": self.age + 1, "turns": self.turns + 1, "quiet": leave, "spoke": now}
+        counts |= {"parted": self.parted or leave}
         return replace(self, question=question, person=person or self.person, **counts, **noted)
 
     def speaking(self, words: str = "") -> Talk:

@@ -50,6 +50,7 @@ _ADVICE = re.compile(
 """Questions for advice or an opinion, not for memories."""
 _EMPTY = re.compile(r"\b(?:am|is|are|was|were)\W*$", re.IGNORECASE)
 """The end of a statement that lacks its last word: in *my hobby is rowing*, the parser takes *rowing* for the verb."""
+_THEIRS = re.compile(r"^(?:his|her|their)\b", re.IGNORECASE)
 _LABEL = re.compile(r"^be (?:called|named)$")
 _DEICTIC = re.compile(r"(?:(?:this|that|these|those|it|here|there)\b|(?:him|her|them)$)", re.IGNORECASE)
 _ASIDE = frozenset(["punct", "cc", "conj", "advcl", "parataxis", "intj", "mark", "meta", "dep"])
@@ -92,10 +93,17 @@ def told_in(reader: Reader, before: Sequence[Told] = ()) -> tuple[list[Told], li
     for said in reader.seen.statements:
         he = said.subject.text.lower() in ("he", "she", "they") and not _LABEL.search(said.triple.predicate)
         subject = last if he else _about(reader, said)
+        owner = f"{last}'s" if last and _THEIRS.match(said.subject.text) else ""
+        words = _THEIRS.sub(owner, said.subject.text) if owner else said.subject.text
         if said.subject.names or reader.noun(said.subject) or WORDS["kin"] & {said.subject.head}:
-            owner = said.subject.owner if said.subject.head == "name" else None  # "my wife's name is..., and she..."
-            last = (owner or said.subject).name or named.get(reader.noun(said.subject)) or (owner or said.subject).text
+            named_one = (
+                said.subject.owner if said.subject.head == "name" else None
+            )  # "my wife's name is..., and she..."
+            about = named_one or said.subject
+            last = about.name or named.get(reader.noun(said.subject)) or about.text
             last = last.removeprefix("ex ")
+        elif owner and reader.relative(said.subject.head):
+            last = words
         elif said.subject.person == "I" and said.object.names and not said.object.preposition:
             last = said.object.names[0]
         elif said.subject.person == "I" and reader.relative(said.object.head) in named:
@@ -112,6 +120,7 @@ def told_in(reader: Reader, before: Sequence[Told] = ()) -> tuple[list[Told], li
             continue
         if he and last:
             text = re.sub(r"^(?:s?he|they)\b", _returned(last), text, flags=re.IGNORECASE)
+        text = _THEIRS.sub(_returned(owner), text) if owner else text
         thing = said.object.text  # "a parrot called Coco"
         if said.object.head and said.object.names and not reader.noun(said.object):
             thing = re.sub(rf"[\s,]+{re.escape(said.object.name)}$", "", thing)
@@ -123,7 +132,7 @@ def told_in(reader: Reader, before: Sequence[Told] = ()) -> tuple[list[Told], li
             one for one in reader.seen.statements if one.subject.person == "I" and one.triple[1:] == said.triple[1:]
         )
         subject = "" if said.subject.person != "I" and any(same) else subject  # "my wife and I live in Rome"
-        one = Told(subject or said.subject.text, said.triple.predicate, thing, text, who=last)
+        one = Told(subject or words, said.triple.predicate, thing, text, who=last)
         heard.append(one)
         if subject and (not he or last in [one.who for one in heard[:-1]]) and _is_worth_keeping(reader, said):
             free.append(one)
@@ -137,9 +146,14 @@ def retold_with(one: Told, right: str) -> Told:
     return replace(one, object=right, text=text)
 
 
+def is_about(one: Told, phrase: str) -> bool:
+    """Return whether a statement begins with the user's words for somebody: *your boss Ann sings*, for *my boss*."""
+    return re.match(rf"{re.escape(_returned(phrase))}(?![\w-])", one.text, re.IGNORECASE) is not None
+
+
 def recalled(reader: Reader, told: Iterable[Told], known: Facts) -> list[Told]:
     """Return the statements that answer the user's question: *what does Jonas play*, *who is getting married?*."""
-    told, kind = list({one.text: one for one in told if one.text}.values()), reader.seen.question
+    told, kind = _latest(told), reader.seen.question
     for said in reader.seen.statements:
         about = next((phrase for phrase in reversed(said.phrases) if phrase.preposition == "about"), None)
         informing = said.subject.person == "you" and said.verb == "tell" and not (about and about.names)
@@ -148,14 +162,18 @@ def recalled(reader: Reader, told: Iterable[Told], known: Facts) -> list[Told]:
             return [one for one in told if _covers(one, words, known)][-3:]
     asked = next((said for said in reader.seen.statements if said.question and said.subject.person != "you"), None)
     mine = bool(reader.words & _MINE)
-    if asked is not None and _is_general(reader, asked.subject.text) and not mine:
+    if asked is not None and (asked.subject.of("you") or (_is_general(reader, asked.subject.text) and not mine)):
         return []
     if _ADVICE.search(reader.tree.text) and "remember" not in reader.words:
         return []
-    if asked is None or kind is None or (kind == nlp.QuestionWord.YES_NO and not reader.words & {"remember", "know"}):
+    if asked is None or kind is None:
         return []
     light = WORDS["light"] | WORDS["knowing"]
-    words = [word.lemma for word in reader.tree.words if word.pos in _CONTENT and word.lemma not in light]
+    words = [word.low if word.pos == "PROPN" else word.lemma for word in reader.tree.words if word.pos in _CONTENT]
+    words = [word for word in words if word not in light]
+    if kind == nlp.QuestionWord.YES_NO and not reader.words & {"remember", "know"}:
+        fit = [one for one in told if _is_about(one, asked, known) and _decides(one, asked, words, known)]
+        return fit[-1:]
     being_called = asked.triple.predicate in ("be called", "be named") or asked.subject.head == "name"
     if being_called or (kind == nlp.QuestionWord.PERSON and asked.verb == "be"):
         words = [word for word in words if word != "name"]
@@ -171,18 +189,20 @@ def recalled(reader: Reader, told: Iterable[Told], known: Facts) -> list[Told]:
     exact = [
         one
         for one in fit
-        if words
+        if len(words) > reader.seen.advised  # "what do I wear?" asks for advice
         and _covers(one, words, known)
         and (asked.subject.person != "I" or one.subject == "I" or one.subject.startswith("my "))
         and (not being or (sure and one.verb.endswith("be")))
         and (
             sure
             or (one.who and person and asked.verb != "be")
-            or (one.verb == asked.triple.predicate and len(words) > 1 and _covers(one, filter(None, subjects), known))
+            or (_does(one, asked) and len(words) > 1 and _covers(one, filter(None, subjects), known))
         )
     ]
     if exact and (sure or reader.words & _REMINDING or kind != nlp.QuestionWord.OBJECT):
-        return [max(exact, key=lambda one: (one.verb == asked.triple.predicate, told.index(one)))]
+        return [max(exact, key=lambda one: (_is_about(one, asked, known), _does(one, asked), told.index(one)))]
+    if reader.seen.advised:
+        return []
     parts = [part for part in (reader.tree.text, *reader.tree.text.split(",")) if len(part.split()) > 3]
     if not mine or not fit or not parts:
         return []
@@ -193,6 +213,37 @@ def recalled(reader: Reader, told: Iterable[Told], known: Facts) -> list[Told]:
     likeness = (rows[len(parts) :] @ rows[: len(parts)].T).max(axis=1)
     best = max(range(len(likeness)), key=likeness.__getitem__)
     return [fit[best]] if likeness[best] > LEAST else []
+
+
+def _latest(told: Iterable[Told]) -> list[Told]:
+    """Return the statements in order. The last of several with the same text counts."""
+    found: dict[str, Told] = {}
+    for one in filter(lambda one: one.text, told):
+        found.pop(one.text, None)
+        found[one.text] = one
+    return list(found.values())
+
+
+def _is_about(one: Told, asked: nlp.Statement, known: Facts) -> bool:
+    """Return whether a statement has the subject that the user asks about: *Rosa* counts as *my sister*."""
+    subject = asked.subject
+    if subject.person == "I":
+        return one.subject.lower() == "i"
+    names = (subject.name or subject.text, *known.get(NOUNS.get(subject.head, ""), ()))
+    return any(name.lower() in (one.subject.lower(), one.who.lower()) for name in names)
+
+
+def _does(one: Told, asked: nlp.Statement) -> bool:
+    """Return whether a statement has the verb that the user asks about."""
+    return one.verb in _alike(asked.triple.predicate)
+
+
+def _decides(one: Told, asked: nlp.Statement, words: Sequence[str], known: Facts) -> bool:
+    """Return whether a statement answers a question for yes or no. *I hate fish* answers *do I like fish?*."""
+    judged = WORDS["likes"] | WORDS["dislikes"]
+    if asked.verb in judged and one.verb.removeprefix("not ") in judged:
+        words = [word for word in words if word not in judged]
+    return bool(words) and _covers(one, words, known)
 
 
 def _naming(told: Sequence[Told]) -> list[Told]:
@@ -214,7 +265,12 @@ def _has_name(words: str) -> bool:
 def _covers(one: Told, words: Iterable[str], known: Facts) -> bool:
     """Return whether a statement has all these words. *Rosa* counts as *sister* if the user's sister is Rosa."""
     had = _stems(f"{one.text} {one.verb} {one.subject}")
-    return all(_stems(" ".join((word, *known.get(NOUNS.get(word, ""), ())))) & had for word in words)
+    return all(_stems(" ".join((word, *_alike(word), *known.get(NOUNS.get(word, ""), ())))) & had for word in words)
+
+
+def _alike(verb: str) -> frozenset[str]:
+    """Return the verbs of a statement that answers a question with this verb: *Ines moved* answers *does Ines live*."""
+    return WORDS["dwelling"] if verb in WORDS["dwelling"] else frozenset([verb])
 
 
 def _stems(text: str) -> set[str]:
@@ -328,9 +384,8 @@ def _retold(reader: Reader, said: nlp.Statement) -> str:
     ]
     words = [top, *(word for child in parts for word in tree.subtree(child))]
     text = spelled_out(tree.phrase(words))
-    if said.subject.text.lower().split()[-1:] and said.subject.text.lower().split()[-1] not in re.findall(
-        r"\w+", text.lower()
-    ):
+    last = said.subject.text.lower().split()[-1:]
+    if last and not {*last} & {*re.findall(r"\w+", text.lower()), *text.lower().split()}:
         text = f"{said.subject.text} {text}"
     return _returned(text)
 

@@ -10,16 +10,18 @@ from typing import Literal
 from ravestate.language.feelings import SORROWS
 from ravestate.modules import nlp
 from ravestate.modules.meta.nlp.answer import is_only_yes
+from ravestate.modules.meta.nlp.introduction import introductions_in
 
 from . import kinds
-from .answers import spelled_out
+from .answers import spelled_out, without_opening
+from .changes import is_similar
 from .contrast import Correction, corrected_in, denied_in
-from .reading import PEOPLE, Reader
+from .reading import Reader
 from .recollection import asks_for_words, asks_to_repeat
 from .talk import CONFIRM, FORGET, Talk
-from .told import Told, recalled, told_in
+from .told import Told, is_about, recalled, told_in
 from .topics import NAME, NOUNS, TOPICS, WORDS, Fact, is_topic, touched_by
-from .wording import Facts, among
+from .wording import Facts, alike, among, same
 
 EVERYTHING = "everything"
 """The value of `Fact.topic` that stands for all topics."""
@@ -71,6 +73,8 @@ class Meaning:
     """The topics that the user's words touch."""
     person: str = ""
     """The topic of the relative whom the user mentions."""
+    another: bool = False
+    """Whether the name that the user tells is another person's, and not the right spelling of the known name."""
     said: tuple[Told, ...] = ()
     words: tuple[str, ...] = ()
     """The sentences of the utterance. If the kind is ``asked_words``: the sentence that answers the question."""
@@ -91,12 +95,19 @@ def understand(
     said = told_in(hearing.reader, talk.said)[1]
     words = tuple(one for one in seen.sentences if not one.rstrip().endswith("?")) if seen.question is None else ()
     meaning = hearing.meaning()
+    asked = [understand(one, talk, known, now, within, hearing.told) for one in seen.questions]
+    if asked and all(
+        one.kind.startswith("asked") and (one.facts or one.free) for one in asked
+    ):  # "what is my name and where do I live?"
+        facts = (fact for one in asked for fact in one.facts)
+        meaning = replace(asked[0], kind="asked", facts=tuple(facts), free=tuple(t for one in asked for t in one.free))
     noted = {"touched": touched, "person": person, "said": tuple(said), "words": words, "moved": hearing.moved}
     if meaning.kind in ("told", "corrected", "nothing") and (denied := denied_in(said, (*hearing.told, *talk.said))):
         kind = "told" if meaning.kind == "nothing" else meaning.kind
         meaning = replace(meaning, kind=kind, gone=(*meaning.gone, *denied))
+    another = any(map(hearing.is_another, (fact for fact in meaning.facts if fact.topic == NAME)))
     busy = not meaning.facts and (seen.question is not None or len(seen.text.split()) > BRIEF)
-    return replace(meaning, busy=busy, **noted)
+    return replace(meaning, busy=busy, another=another, **noted)
 
 
 class _Hearing:
@@ -113,7 +124,7 @@ class _Hearing:
         self.acts = {match.name for match in kinds.acts().match_all(seen.sentences) if match is not None}
         self.text = spelled_out(seen.tree.text)
         self.sum = any(map(str.isdigit, self.text))  # "no time, 12 x 3" wants a sum, which another module answers
-        self.named = self.topic in PEOPLE and any(tag.label == self.topic for tag in self.reader.tags)
+        self.answers = self.waits and any(tag.label == self.topic for tag in self.reader.tags)
         self.leave = "farewell" in seen.acts and not self.is_unsure("farewell")
         self.sorry = bool(SORROWS & set(seen.feelings))
         self.moved = bool(set(seen.feelings) - _CALM or {"joke", "praise", "play"} & set(seen.acts))
@@ -144,7 +155,8 @@ class _Hearing:
             return vouched
         stated = self.reader.facts()
         topics = {fact.topic for fact in stated if not fact.gone}
-        told = asks and (not seen.advised or self.reader.asks() or asks_for_words(seen))
+        found = recalled(self.reader, (*self.told, *self.talk.said), self.known) if asks else []
+        told = asks and (not seen.advised or found or self.reader.asks() or asks_for_words(seen))
         if told or "ask_everything" in self.acts:
             inquiry = self.inquiry()
             if self.talk.words and asks_to_repeat(seen):
@@ -153,7 +165,7 @@ class _Hearing:
                 asks, inquiry = False, None
             if inquiry and self.is_known(inquiry.facts[0].topic):
                 return inquiry
-            if found := recalled(self.reader, (*self.told, *self.talk.said), self.known):
+            if found:
                 return Meaning("asked_told", free=tuple(found))
             if self.talk.words and asks_for_words(self.seen):
                 return Meaning("asked_words", facts=inquiry.facts if inquiry else ())
@@ -187,8 +199,8 @@ class _Hearing:
         return self.otherwise(aside)
 
     def is_unsure(self, act: str) -> bool:
-        """Return whether an act is rather the answer to a question for a name: *Rocky*."""
-        return self.named and self.seen.acts[act].score < 0.9
+        """Return whether an act is rather the answer to the agent's question: *Rocky*, *Bonn*."""
+        return self.answers and self.seen.acts[act].score < 0.9
 
     def otherwise(self, aside: bool) -> Meaning:
         """Return the meaning of an utterance that states no fact; `aside` says whether it asks, or says goodbye."""
@@ -214,6 +226,17 @@ class _Hearing:
     def is_name(self, values: tuple[str, ...]) -> bool:
         """Return whether these values are the name by which the agent knows the user."""
         return all(among(value, self.known.get(NAME, ())) for value in values)
+
+    def is_another(self, name: Fact) -> bool:
+        """Return whether a name begins another acquaintance: after a farewell, or with words such as *Peter here*.
+
+        A correction does not: *no, I'm Peter*."""
+        known, said = self.known.get(NAME, ()), " ".join(name.values)
+        denied = name.gone or self.seen.contrasts or self.seen.yesno.no or "contradiction" in self.acts
+        if not known or denied or alike(said, known) or without_opening(self.text):
+            return False
+        here = any(one.present and same(one.name, said) for one in introductions_in(self.seen.tree))
+        return self.talk.parted or (here and not any(is_similar(said, one) for one in known))
 
     def denies_name(self) -> bool:
         """Return whether the user says that they are not the person that the agent takes them for."""
@@ -294,7 +317,14 @@ class _Hearing:
             return None
         named = any(phrase.names for said in self.seen.statements for phrase in (said.object, *said.phrases))
         if "ask_everything" in self.acts and not named and self.of_speakers():
-            return Meaning("asked", (Fact(EVERYTHING),))
+            phrases = (phrase for said in self.seen.statements if said.question for phrase in said.phrases)
+            about = [phrase for phrase in phrases if phrase.preposition == "about"]
+            if topic := next(
+                (topic for one in about if (topic := self.reader.noun(one))), ""
+            ):  # "did I tell you about my sister"
+                return Meaning("asked", (Fact(topic),))
+            others = any(phrase.of("I") and WORDS["kin"] & {phrase.head} for phrase in about)
+            return Meaning("asked", (Fact("" if others else EVERYTHING),))
         wished = any(said.plan for said in self.seen.statements)  # "do you want to know my name"
         offered = wished and self.seen.question == nlp.QuestionWord.YES_NO  # "do you want to be my friend"
         if topic := self.pointed():
@@ -347,10 +377,13 @@ class _Hearing:
             facts = facts or self.reader.facts() or [fact for fact in [self.reader.asks()] if fact]
             names = {object.text or "-", *(name for f in facts for name in f.values or self.known.get(f.topic, ()))}
             again = {one.key for one in told_in(self.reader)[0]}
+            mine = object.of("I")
             free = tuple(
-                one for one in (*self.told, *self.talk.said) if {one.subject, one.object} & names or one.key in again
+                one
+                for one in (*self.told, *self.talk.said)
+                if {one.subject, one.object} & names or one.key in again or (mine and is_about(one, object.text))
             )
-            if facts or free or object.of("I") or any(one.subject.person == "I" for one in self.seen.statements):
+            if facts or free or mine or any(one.subject.person == "I" for one in self.seen.statements):
                 return Meaning("strike", tuple(facts), free=free)
         match = self.seen.act("forget_me")
         return Meaning("forget") if match and match.score > 0.7 and not wishes else None
