@@ -26,14 +26,14 @@ class Bench(contextlib.ExitStack):
         self.quick = quick
 
     def rounds(self, many: int, few: int = 3) -> Iterator[int]:
-        """Yield the numbers of the repetitions. Run every contestant in each one, so that noise hits all alike."""
+        """Yield the numbers of the repetitions. In each one, run all contestants, so that noise hits them alike."""
         total = few if self.quick else many
         for number in range(total):
             self.progress(f"round {number + 1} of {total}")
             yield number
 
     def several(self, many: int, few: int) -> int:
-        """Return the number of measurements within a repetition."""
+        """Return the number of measurements within a repetition: `many`, or `few` if `quick`."""
         return few if self.quick else many
 
     def ours(self, module: str = "benchmarks.peers.ours") -> Child:

@@ -51,7 +51,7 @@ class Child:
         return cls(str(interpreter), "-E", str(PEERS / script))  # -E: PYTHONPATH may lead to this checkout
 
     def ask(self, call: str, timeout: float = 600.0, /, **arguments: Any) -> Any:
-        """Call a function of the contestant.
+        """Call a function of the contestant with these arguments, and return its result.
 
         Raises:
             ChildError: The function raised, the process ended, or the call took longer than `timeout` (seconds).

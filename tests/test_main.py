@@ -52,6 +52,34 @@ def test_text_for_people_has_question_marks_for_what_a_terminal_cannot_show() ->
     assert run.returncode == 0 and b"normal    A caf?." in run.stdout
 
 
+BUFFERED = {name: value for name, value in os.environ.items() if name != "PYTHONUNBUFFERED"}
+
+
+@pytest.mark.skipif(not Path("/dev/full").exists(), reason="the system has no /dev/full")
+@pytest.mark.parametrize("environment", [BUFFERED, {**BUFFERED, "PYTHONUNBUFFERED": "1"}])
+@pytest.mark.parametrize("command", [["check", "rawio"], ["graph", "rawio"]])
+def test_output_that_cannot_be_written_gives_a_message(command: list[str], environment: dict[str, str]) -> None:
+    with Path("/dev/full").open("w") as full:
+        run = subprocess.run(
+            [sys.executable, "-m", "ravestate", *command],
+            stdout=full, stderr=subprocess.PIPE, text=True, check=False, env=environment,
+        )  # fmt: skip
+    message = f"ravestate {command[0]}: the output cannot be written: No space left on device\n"
+    assert (run.returncode, run.stderr) == (1, message)
+
+
+@pytest.mark.parametrize("command", [["check", "rawio"], ["--help"]])
+def test_a_reader_that_has_ended_is_no_error(command: list[str]) -> None:
+    read, write = os.pipe()
+    os.close(read)
+    run = subprocess.run(
+        [sys.executable, "-m", "ravestate", *command],
+        stdout=write, stderr=subprocess.PIPE, text=True, check=False, env=BUFFERED,
+    )  # fmt: skip
+    os.close(write)
+    assert (run.returncode, run.stderr) == (0, "")
+
+
 INTERRUPTED = """
 import sys
 

@@ -1,7 +1,7 @@
 """Settings come from code, the environment and defaults. Messages name every fault, and show no secret."""
 
-import json
-from typing import Any
+from pathlib import Path
+from typing import Any, Literal
 
 import pydantic
 import pytest
@@ -9,6 +9,7 @@ import pytest
 import ravestate as rs
 from ravestate.declare.settings import SettingRef
 from ravestate.settings import load_settings, value_of, variable_of
+from ravestate.yaml_text import load_yaml
 
 
 class Voice(rs.Settings):
@@ -22,6 +23,15 @@ class Mixed(rs.Settings):
     maybe: str | None = None
     either: str | int = ""
     count: int = 0
+
+
+class Texts(rs.Settings):
+    needed: int
+    maybe: str | None = None
+    where: Path = Path()
+    mode: Literal["2", "yes"] = "2"
+    on: bool | Literal["auto"] = "auto"
+    names: tuple[str, ...] = ()
 
 
 class Server(rs.Settings):
@@ -107,12 +117,27 @@ def test_environment_variables_are_read_as_json_except_for_text_fields(field: st
         (Mixed, "either", "12", 12),
         (Mixed, "count", "12", 12),
         (Mixed, "count", "twelve", "twelve"),  # `Mixed` later refuses this value
+        (Texts, "maybe", "1970-01-01", "1970-01-01"),
+        (Texts, "maybe", "[Room] 5", "[Room] 5"),
+        (Texts, "maybe", "Room #5", "Room #5"),
+        (Texts, "maybe", "'Room' #5", "Room"),
+        (Texts, "maybe", "null", None),
+        (Texts, "where", "12", "12"),
+        (Texts, "where", "2024-01-01", "2024-01-01"),
+        (Texts, "mode", "2", "2"),
+        (Texts, "mode", "yes", "yes"),
+        (Texts, "mode", "3", 3),
+        (Texts, "on", "yes", True),
+        (Texts, "on", "auto", "auto"),
+        (Texts, "on", " auto", "auto"),
+        (Texts, "names", "[1]", [1]),
+        (Texts, "needed", "-1", -1),
     ],
 )
 def test_a_text_is_parsed_only_if_its_field_takes_more_than_text(
     model: type[rs.Settings], field: str, text: str, value: object
 ) -> None:
-    assert value_of(text, model, field, json.loads) == value
+    assert value_of(text, model, field, lambda text: load_yaml(text, "--set")) == value
 
 
 def test_an_environment_variable_has_the_name_of_its_module_and_field() -> None:
@@ -140,6 +165,20 @@ def test_one_error_has_all_faults_of_the_settings() -> None:
     assert "settings for 'voise': module 'voise' is not part of this agent; did you mean 'voice'?" in text
     assert "setting voice.speed = 'fast': Input should be a valid number" in text
     assert "setting voice.sped: module 'voice' has no such setting; did you mean 'speed'?" in text
+
+
+def test_a_field_with_an_alias_is_set_and_reported_by_its_own_name() -> None:
+    class Aliased(rs.Settings):
+        alias_: int = pydantic.Field(0, alias="alias")
+
+    module = rs.Module("m", settings=Aliased)
+    for values, environment in (({"alias_": 5}, {}), ({"alias": 5}, {}), ({}, {"RAVESTATE_M_ALIAS_": "5"})):
+        assert load_settings([module], {"m": values}, environment)["m"].alias_ == 5
+    assert value_of("5", Aliased, "alias_", int) == 5
+    (fault,) = faults([module], {"m": {"alias": "five"}})
+    assert fault.startswith("setting m.alias_ = 'five'")
+    (fault,) = faults([module], {"m": {"alias": 5, "alias_": 6}})
+    assert fault == "setting m.alias_ is given twice, by its name and by its alias: write it once"
 
 
 def test_a_name_that_is_not_a_text_is_an_unknown_setting() -> None:

@@ -6,7 +6,8 @@ from typing import Any
 
 import pytest
 
-from ravestate.errors import DeclarationError
+from ravestate.errors import DeclarationError, RavestateError
+from ravestate.loading.spec import AgentSpec
 from ravestate.modules.meta.ontology.type_files import read_types
 from ravestate.modules.meta.verbaliser.phrases import PhraseBook
 from ravestate.modules.skill.agentqa.life_file import read_life
@@ -23,6 +24,7 @@ HOSTILE = {
     "lists": ("[" * 5_000, "file.yaml:1: nested more than 50 levels deep"),
     "mappings": ("{a: " * 5_000, "file.yaml:1: nested more than 50 levels deep"),
     "lines": ("- " * 5_000, "file.yaml:1: nested more than 50 levels deep"),
+    "a repeated key": ("a: 1\na: 2", "file.yaml:2: 'a' is here twice (first in line 1): write it once"),
     "a circle": ("a: 1\nb: &b [*b]", "file.yaml:2: alias *b refers to itself"),
 }
 
@@ -65,20 +67,43 @@ def test_the_error_about_an_invalid_text_names_the_line(text: str, message: str)
     assert str(caught.value).startswith(message)
 
 
+@pytest.mark.parametrize("read", [load_yaml, compose_yaml])
+@pytest.mark.parametrize(
+    ("text", "message"),
+    [
+        ('a: {b: 1, c: 2,\n  "b": 3}', "file.yaml:2: 'b' is here twice (first in line 1): write it once"),
+        ("- &k a: 1\n- *k : 2\n  *k : 3", "file.yaml:1: 'a' is here twice (first in line 1): write it once"),
+    ],
+)
+def test_a_key_that_a_mapping_repeats_is_refused(read: Callable[[str, str], Any], text: str, message: str) -> None:
+    with pytest.raises(DeclarationError) as caught:
+        read(text, "file.yaml")
+    assert str(caught.value) == message
+
+
+def test_keys_may_be_equal_in_different_mappings_or_differ_by_type() -> None:
+    assert load_yaml('[{a: 1}, {a: {a: 2}}, {1: 3, "1": 4}]', "file.yaml") == [
+        {"a": 1},
+        {"a": {"a": 2}},
+        {1: 3, "1": 4},
+    ]
+
+
 READERS: dict[str, Callable[[Path], object]] = {
     "types": lambda path: read_types([path]),
     "phrases": lambda path: PhraseBook.load([path]),
     "life": read_life,
+    "agent": AgentSpec.from_file,
 }
 
 
 @pytest.mark.parametrize("read", READERS.values(), ids=READERS)
-@pytest.mark.parametrize("kind", ["aliases", "mappings"])
+@pytest.mark.parametrize("kind", ["aliases", "mappings", "a repeated key"])
 def test_every_reader_of_user_files_refuses_hostile_texts(
     read: Callable[[Path], object], kind: str, tmp_path: Path
 ) -> None:
     text, message = HOSTILE[kind]
     (tmp_path / "file.yaml").write_text(text, encoding="utf-8")
-    with pytest.raises(DeclarationError) as caught:
+    with pytest.raises(RavestateError) as caught:
         read(tmp_path / "file.yaml")
     assert message.partition(":")[2] in str(caught.value) and "file.yaml" in str(caught.value)

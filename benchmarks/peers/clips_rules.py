@@ -75,7 +75,7 @@ class Agent:
         self.env.build(f"(defrule {name} (declare (salience {salience})) ({on} (text ?text)) (not (output)) => {act})")
 
     def turn(self, text: str, expected: str) -> tuple[Seconds, Seconds]:
-        """Give an input. Return the time to the answer, and the time including the clean-up for the next input."""
+        """Give an input. Return the time to the answer, and the time with the clean-up for the next input."""
         self.said.clear()
         begin = time.perf_counter()
         self.input.assert_fact(text=text)
@@ -93,7 +93,8 @@ def answer(k: int, inputs: int, style: str, before: int = 20) -> dict[str, list[
     """Measure inputs one after another. The rule at the end of a chain of k rules answers each input.
 
     Each batch has an environment of its own, because clipspy 1.0.6 slows down with every input, whether or not the
-    facts are removed. `before` is the number of inputs before the measurement.
+    facts are removed. `before` is the number of inputs before the measurement. Return the times of each input:
+    `answered` until the answer, and `turn` with the clean-up for the next input.
     """
     agent = Agent(k, style)
     for n in range(before):

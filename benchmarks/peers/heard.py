@@ -23,7 +23,7 @@ FRAME = 240
 
 @contextlib.contextmanager
 def noted() -> Iterator[list[Spoken]]:
-    """Note all sentences that are synthesised."""
+    """Give a list that gets each sentence that is synthesised within the ``with`` block."""
     found: list[Spoken] = []
     real = Synthesiser.speak
 

@@ -90,7 +90,10 @@ stage = Stage()
 
 
 def answer(k: int, inputs: int, unrelated: int = 0, threads: bool = False) -> dict[str, list[Seconds]]:
-    """Measure inputs one after another. The rule at the end of a chain of k rules answers each input."""
+    """Measure inputs one after another. The rule at the end of a chain of k rules answers each input.
+
+    Return the times of each input: `answered` until the answer, and `turn` until the agent is quiet again.
+    """
     agent, context = stage.agent(k, unrelated, threads)
 
     async def measure() -> dict[str, list[Seconds]]:

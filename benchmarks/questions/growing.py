@@ -12,7 +12,7 @@ Each workload runs on the bare engine, whose rules do nothing. It runs at one si
 - Shared half: n spikes of each of two signals for a rule `a & b`; a second rule `a & c` waits as well.
 - Recovering and guarded fallbacks: an input among n fallbacks with a cooldown, or with a predicate on a slot.
 - Independent writers: an input among n rules, each with a slot of its own.
-- Cliques: topics that raise each other, with n links; each topic has a rule for one slot, and nothing occurs.
+- Cliques: an input among rules `input & topic_i`. The topics raise each other by n links, and no topic occurs.
 
 Ten times as many spikes, rules or links may take about ten times the time.
 """

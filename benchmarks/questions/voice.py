@@ -2,8 +2,9 @@
 
 - Words: the share of wrong words in recordings of people (LibriVox, from Debian's pocketsphinx-testdata).
 - Wait: the time from the end of the user's speech to the first sound of the answer, on the clock of this machine. It has
-  four parts: the pause that the settings demand, recognition, synthesis, and the rest, which is our own share.
-- End of turn: a recording has complete sentences, and sentences with a pause of a second in the middle. A false cut
+  four parts: the pause that the settings demand, understanding, synthesis, and the rest, which is our own share. To
+  understand, one model finds the words, and another judges whether the turn has ended. The slower of the two counts.
+- False cuts and missed ends: a recording has complete sentences, and sentences with a pause of a second in the middle. A false cut
   ends the turn in such a pause. With a missed end, the agent waits for the longest pause after a complete sentence.
 - Interruptions, back-channels and the echo are measured on the time line of a recording, in virtual time.
 - Heard: the words of an interrupted story that the user heard, according to the agent and according to the

@@ -1,6 +1,6 @@
 """Ravestate: interactive agents as Signal-Rule-Slot automata.
 
-Declare modules of rules in plain Python, compile them into a policy, run it, talk to it, test it in virtual time.
+Declare modules of rules in plain Python. Run them as an agent, talk to the agent, or test it in virtual time.
 Importing this package loads neither third-party packages nor asyncio. Names that need them load on first use.
 """
 

@@ -3,13 +3,13 @@
 ```text
 RavestateError
 ├── DeclarationError(ValueError)      a designer's mistake, found before running
-├── DeclarationErrors(ExceptionGroup) all such mistakes together, raised by ``rs.compile``
+├── DeclarationErrors(ExceptionGroup) all such mistakes together
 ├── UsageError                        no such module, file or setting; commands end with exit code 2
 ├── RuleError(RuntimeError)           a rule failed, or broke its declaration
 │   ├── UndeclaredError(LookupError)  a rule touched a slot or a signal that it does not declare
 │   ├── RuleTimeout(TimeoutError)     a run took longer than the rule's ``timeout``
 │   └── RunEnded                      a rule acted after its run was over
-├── EngineError(RuntimeError)         an event that does not fit the engine's state
+├── EngineError(RuntimeError)         a call that the context cannot accept now, or a failure of the engine
 └── PlatformError(RuntimeError)       a failure of a device, a server or a file, or a missing package
 ```
 
@@ -30,7 +30,7 @@ class DeclarationError(RavestateError, ValueError):
 
 
 class DeclarationErrors(RavestateError, ExceptionGroup[DeclarationError]):
-    """All faults that ``rs.compile`` found; ``.exceptions`` holds a `DeclarationError` for each fault."""
+    """All faults of a policy or its settings; ``.exceptions`` holds a `DeclarationError` for each fault."""
 
     def __new__(cls, faults: Sequence[DeclarationError]) -> DeclarationErrors:
         return super().__new__(cls, _count(faults), faults)
@@ -73,7 +73,10 @@ class RunEnded(RuleError):
 
 
 class EngineError(RavestateError, RuntimeError):
-    """An event did not fit the engine's state: a fault of the code that uses the engine, not of a rule."""
+    """A call does not fit the present state of a context or a simulation, or the engine itself has failed.
+
+    In virtual time, rules that trigger each other without end raise this error, too.
+    """
 
 
 class PlatformError(RavestateError, RuntimeError):

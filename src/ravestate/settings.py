@@ -8,8 +8,9 @@ from __future__ import annotations
 
 import json
 import os
-from collections.abc import Callable, Iterable, Mapping
-from typing import Any, cast, get_args
+from collections.abc import Callable, Collection, Iterable, Iterator, Mapping
+from pathlib import PurePath
+from typing import Annotated, Any, cast, get_args, get_origin
 
 import pydantic
 
@@ -19,6 +20,9 @@ from ravestate.declare.wording import short
 from ravestate.errors import DeclarationError, DeclarationErrors, nearest
 
 TEXT = (str, pydantic.SecretStr)
+
+NameOrPath = Annotated[str, PurePath]
+"""The type of a setting that takes a name or a path, such as a microphone's name or a sound file."""
 
 
 class _SettingsMeta(type(pydantic.BaseModel)):
@@ -47,6 +51,9 @@ class Settings(pydantic.BaseModel, metaclass=_SettingsMeta):
     - the agent file
     - the defaults
 
+    In an agent file, a relative path in a field of the type `pathlib.Path` is relative to the folder of the file. In all
+    other sources, it is relative to the working folder.
+
     Example:
         >>> import ravestate as rs
         >>> class Patience(rs.Settings):
@@ -57,7 +64,10 @@ class Settings(pydantic.BaseModel, metaclass=_SettingsMeta):
         5.0
     """
 
-    model_config = pydantic.ConfigDict(extra="forbid", frozen=True, validate_default=True)
+    # Sources and messages use the names of fields; a field's alias is a second name.
+    model_config = pydantic.ConfigDict(
+        extra="forbid", frozen=True, validate_default=True, populate_by_name=True, loc_by_alias=False
+    )
 
 
 def load_settings(
@@ -68,7 +78,8 @@ def load_settings(
     """Return the settings of each module, by the module's name.
 
     Values in `given` override values in the environment, and these override the defaults. For each module, `given` has
-    values of fields, or an instance of the module's settings class.
+    values of fields, or an instance of the module's settings class. Without `environment`, the variables of the
+    process count.
 
     Raises:
         DeclarationErrors: Modules or fields are unknown, or values have wrong types. The group has one error for each
@@ -131,20 +142,74 @@ def _from_environment(name: str, model: type[pydantic.BaseModel], variables: Map
 def value_of(text: str, model: type[pydantic.BaseModel], field: str, parse: Callable[[str], Any]) -> Any:
     """Convert a text from the environment or from ``--set`` to a value for `field`.
 
-    A text field gets the text itself, and any other field gets the result of `parse`. If `parse` raises a ValueError,
-    the field gets the text.
+    A text field gets the text itself, and any other field gets the result of `parse`. The field gets the text as well
+    if `parse` raises a ValueError, or if the field takes the text but not the result: ``12`` is a text for
+    ``str | None`` and for a path, and a number for ``str | int``. If the result is a text, too, the field gets the
+    whole text, because `parse` removes ``#5`` from ``Room #5``.
     """
-    annotation = cast("Any", model.model_fields[field].annotation)
-    kinds = {annotation, *get_args(annotation)}
-    if annotation in TEXT:
+    if cast("Any", model.model_fields[field].annotation) in TEXT:
         return text
     try:
         value = parse(text)
     except ValueError:
         return text
-    # `12` is text for `str | None`, and a number for `str | int`
-    is_word = isinstance(value, (bool, int, float)) and not kinds & {bool, int, float}
-    return text if is_word and not kinds.isdisjoint(TEXT) else value
+    is_part = isinstance(value, str) and not text.startswith(('"', "'"))
+    return text if (is_part or not _takes(model, field, value)) and _takes(model, field, text) else value
+
+
+def field_of(model: type[pydantic.BaseModel], key: str) -> str:
+    """Return the name of the field that has the name or the alias `key`; if there is none, return `key` itself."""
+    fields = model.model_fields.items()
+    return next((name for name, field in fields if key in (name, field.alias, field.validation_alias)), key)
+
+
+def from_folder(value: Any, model: type[pydantic.BaseModel], field: str, folder: PurePath) -> Any:
+    """Return a field's value from a file in `folder`, with the folder in front of each relative path.
+
+    A `NameOrPath` is a path if it begins with ``./`` or ``../``, or names a file in the folder.
+    """
+    info = model.model_fields.get(field)
+    return (
+        value
+        if info is None or folder == PurePath()
+        else _located(value, [*_kinds(info.annotation), *info.metadata], folder)
+    )
+
+
+def _located(value: Any, kinds: Collection[Any], folder: PurePath) -> Any:
+    classes = [kind for kind in kinds if isinstance(kind, type)]
+    if isinstance(value, list):
+        return [_located(item, kinds, folder) for item in cast("list[Any]", value)]
+    if isinstance(value, dict):
+        items = cast("dict[Any, Any]", value).items()
+        for model in classes:
+            if issubclass(model, pydantic.BaseModel):
+                return {key: from_folder(item, model, key, folder) for key, item in items}
+        return {key: _located(item, kinds, folder) for key, item in items}
+    if not isinstance(value, str) or not any(issubclass(kind, PurePath) for kind in classes):
+        return value
+    path = os.path.join(folder, os.path.expanduser(value))
+    is_name = str in kinds and not value.startswith(("./", "../")) and not os.path.isfile(path)
+    return value if is_name else path
+
+
+def _kinds(annotation: Any) -> Iterator[Any]:
+    """Yield the types in an annotation, apart from those of the keys of a mapping."""
+    arguments, origin = get_args(annotation), get_origin(annotation)
+    if isinstance(origin, type) and issubclass(origin, Mapping):
+        arguments = arguments[1:]
+    for argument in arguments:
+        yield from _kinds(argument)
+    if not arguments:
+        yield annotation
+
+
+def _takes(model: type[pydantic.BaseModel], field: str, value: Any) -> bool:
+    try:
+        model(**{field: value})
+    except pydantic.ValidationError as error:  # other fields may be missing
+        return all(detail["loc"][:1] != (field,) for detail in error.errors())
+    return True
 
 
 def _faults(name: str, model: type[pydantic.BaseModel], error: pydantic.ValidationError) -> Iterable[DeclarationError]:
@@ -152,7 +217,9 @@ def _faults(name: str, model: type[pydantic.BaseModel], error: pydantic.Validati
         field = ".".join(str(part) for part in detail["loc"])
         top = str(detail["loc"][0]) if detail["loc"] else ""
         where = f"setting {name}.{field}" if field else f"settings of {name}"
-        if detail["type"] == "extra_forbidden":
+        if detail["type"] == "extra_forbidden" and field in model.model_fields:
+            yield DeclarationError(f"{where} is given twice, by its name and by its alias: write it once")
+        elif detail["type"] == "extra_forbidden":
             yield DeclarationError(f"{where}: module {name!r} has no such setting{nearest(field, model.model_fields)}")
         elif detail["type"] == "missing":
             yield DeclarationError(

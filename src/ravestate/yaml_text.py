@@ -1,7 +1,8 @@
-"""Read YAML that users write, with limits on depth and size. Errors name the file and, where possible, the line.
+"""Read YAML that users write, with limits on depth and size, and without repeated keys. Errors name the file and, where possible, the line.
 
 A few lines of aliases can stand for billions of values ("billion laughs"), and deep nesting exhausts the
-stack. The loaders here refuse both immediately.
+stack. The loaders here refuse both immediately. If a mapping has a key twice, YAML itself would lose the first value
+without a word.
 """
 
 from __future__ import annotations
@@ -29,7 +30,8 @@ LARGEST = 100_000
 def load_yaml(text: str, name: str) -> Any:
     """Return the value of a YAML text: mappings, lists, texts, numbers and dates; `None` if it is empty.
 
-    If the text is not valid, nests too deeply, or stands for too many values, raise a `DeclarationError`.
+    If the text is not valid, repeats a key, nests too deeply, or stands for too many values, raise a
+    `DeclarationError`. Its message begins with `name`, the name of the file.
     """
     try:
         with contextlib.suppress(yaml.YAMLError):  # the slower loader below has better error messages
@@ -42,9 +44,9 @@ def load_yaml(text: str, name: str) -> Any:
 
 
 def compose_yaml(text: str, name: str) -> yaml.Node | None:
-    """Return the root node of a YAML text; `None` if it is empty. Nodes know their lines, and every scalar is text.
+    """Return the root node of a YAML text; `None` if it is empty. Each node has its line, and every scalar is text.
 
-    It raises the same errors as `load_yaml`.
+    For `name` and the errors, see `load_yaml`.
     """
     try:
         with contextlib.suppress(yaml.YAMLError):
@@ -55,7 +57,7 @@ def compose_yaml(text: str, name: str) -> yaml.Node | None:
 
 
 class _Bounded(Composer):
-    """A composer that counts levels and values, and refuses too many of them."""
+    """A composer that counts levels and values and refuses too many of them. It refuses repeated keys, too."""
 
     depth = count = 0
 
@@ -65,18 +67,20 @@ class _Bounded(Composer):
         before = self.count
         self.depth += 1
         if self.depth > DEEPEST:
-            raise _LimitError(f"nested more than {DEEPEST} levels deep", event)
+            raise _RefusedError(f"nested more than {DEEPEST} levels deep", event)
         node = super().compose_node(parent, index)
         self.depth -= 1
         if not isinstance(event, yaml.AliasEvent):
+            if isinstance(node, yaml.MappingNode):
+                _refuse_repeated_keys(node)
             self.count += 1
             sizes[event.anchor] = self.count - before
         elif event.anchor in sizes:
             self.count += sizes[event.anchor]
         else:
-            raise _LimitError(f"alias *{event.anchor} refers to itself", event)
+            raise _RefusedError(f"alias *{event.anchor} refers to itself", event)
         if self.count > LARGEST:
-            raise _LimitError(f"more than {LARGEST:,} values once the aliases are followed", event)
+            raise _RefusedError(f"more than {LARGEST:,} values once the aliases are followed", event)
         return node
 
 
@@ -128,9 +132,19 @@ if yaml.__with_libyaml__:
     _value_loader, _text_loader = _FastSafeLoader, _FastTextLoader
 
 
-class _LimitError(yaml.MarkedYAMLError):
-    def __init__(self, problem: str, event: Any) -> None:
-        super().__init__(None, None, problem, event.start_mark)
+class _RefusedError(yaml.MarkedYAMLError):
+    def __init__(self, problem: str, place: Any) -> None:
+        super().__init__(None, None, problem, place.start_mark)
+
+
+def _refuse_repeated_keys(mapping: yaml.MappingNode) -> None:
+    lines: dict[tuple[str, str], int] = {}
+    for key, _ in cast("list[tuple[yaml.Node, yaml.Node]]", mapping.value):
+        if isinstance(key, yaml.ScalarNode):
+            name = (key.tag, key.value)
+            if name in lines:
+                raise _RefusedError(f"{key.value!r} is here twice (first in line {lines[name]}): write it once", key)
+            lines[name] = key.start_mark.line + 1
 
 
 def _fault(error: yaml.YAMLError, text: str, name: str) -> DeclarationError:
@@ -139,7 +153,7 @@ def _fault(error: yaml.YAMLError, text: str, name: str) -> DeclarationError:
         return DeclarationError(f"{name}:{line}: not valid YAML (a control character)")
     mark = error.problem_mark or error.context_mark
     place = name if mark is None else f"{name}:{mark.line + 1}"
-    if isinstance(error, _LimitError):
+    if isinstance(error, _RefusedError):
         return DeclarationError(f"{place}: {error.problem}")
     reason = ", ".join(filter(None, (error.context, error.problem)))
     hint = "Put quotes around a text that contains : or #, or begins with a brace"

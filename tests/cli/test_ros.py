@@ -42,6 +42,10 @@ def bus() -> Iterator[str]:
             node = ros2.make_node(ros2.Settings(backend="bus", bus=made.address))
             chat = node.advertise("/chat", "std_msgs/String", latch=True, qos=quality("latched", depth=1, latch=True))
             chat.publish("hello")
+            scan = node.advertise(
+                "/scan", "sensor_msgs/LaserScan", latch=True, qos=quality("latched", depth=1, latch=True)
+            )
+            scan.publish({"range_max": float("inf"), "ranges": [float("nan"), 1.5] + [float("-inf")] * 98})
             node.offer("/lamp", "std_srvs/SetBool", serve)
             await node.ready.wait()
             address[0] = made.address
@@ -98,6 +102,7 @@ def test_the_action_topics_lists_topics_and_services(bus: str, capsys: pytest.Ca
     assert ros(bus, "topics", "--version", "2") == 0
     assert capsys.readouterr().out.splitlines() == [
         "topic    /chat  std_msgs/msg/String  1 publisher, 0 subscribers",
+        "topic    /scan  sensor_msgs/msg/LaserScan  1 publisher, 0 subscribers",
         "service  /lamp  std_srvs/srv/SetBool  1 server",
     ]
 
@@ -105,6 +110,17 @@ def test_the_action_topics_lists_topics_and_services(bus: str, capsys: pytest.Ca
 def test_the_action_echo_prints_messages(bus: str, capsys: pytest.CaptureFixture[str]) -> None:
     assert ros(bus, "echo", "/chat", "-n", "1") == 0
     assert json.loads(capsys.readouterr().out) == {"data": "hello"}
+
+
+def test_the_action_echo_writes_null_for_numbers_that_json_lacks(bus: str, capsys: pytest.CaptureFixture[str]) -> None:
+    assert ros(bus, "echo", "/scan", "-n", "1") == 0
+
+    def refuse(constant: str) -> None:
+        raise AssertionError(f"{constant} is not JSON")
+
+    message = json.loads(capsys.readouterr().out, parse_constant=refuse)
+    assert message["range_max"] is None
+    assert message["ranges"] == [None, 1.5, None, None, None, None, None, None, "... 100 values"]
 
 
 def test_the_message_for_an_unknown_topic_suggests_the_nearest_name(

@@ -3,7 +3,7 @@
 import pytest
 
 import ravestate as rs
-from ravestate.declare.wording import cut, place_of_call, short, spelt
+from ravestate.declare.wording import cut, place_of_call, said, short, spelt
 
 
 @pytest.mark.parametrize(
@@ -44,3 +44,8 @@ def test_a_slot_refuses_a_value_without_a_repr() -> None:
     """The exception from the `repr` must not replace the message."""
     with pytest.raises(rs.RuleError, match="the rule wrote <Shy without a repr> to m:mood, which takes str"):
         rs.Module("m").slot("mood", "", type=str).check(Shy(), "the rule")
+
+
+def test_an_exception_without_a_message_is_shown_by_its_type() -> None:
+    assert said(ValueError("no such day")) == "no such day"
+    assert said(AssertionError()) == "AssertionError()"

@@ -66,6 +66,15 @@ def test_a_matcher_that_is_not_loaded_recognises_only_its_exact_examples() -> No
     assert matcher.match("I like green tea") is None
 
 
+@pytest.mark.parametrize("load", [False, True])
+def test_a_sentence_without_words_belongs_to_a_class_only_if_it_equals_an_example(load: bool) -> None:
+    matcher = Matcher({"smile": ["🙂", "i smile"], "surprise": ["?!"]}, none=["the sun shines"])
+    if load:
+        matcher.load()
+    found = matcher.match_all(["🙂", "?!", "👍", "!", "the sun shines"])
+    assert [match and match.name for match in found] == ["smile", "surprise", None, None, None]
+
+
 def test_an_example_that_resembles_another_class_is_a_confusion() -> None:
     matcher = Matcher({**EXAMPLES, "late": ["until when are you open", "how long are you open"]}, NONE)
     assert ("until when are you open", "late", "hours") in matcher.confusions()

@@ -67,6 +67,22 @@ def test_keep_latest_keeps_only_the_newest_spike(play: Any) -> None:
         assert len(drops(sim, a)) == 4
 
 
+def test_a_conjunction_that_never_gets_its_last_signal_has_few_activations_for_each_live_spike(play: Any) -> None:
+    # L12: an activation that lost a spike takes another. So ever more activations would go on with the same spikes.
+    m = rs.Module("m")
+    picture, sound, word, out = m.signal("picture"), m.signal("sound"), m.signal("word"), output(m)
+    writer(m, "fuse", picture & sound & word, out)
+    with play(m) as sim:
+        for _ in range(200):
+            sim.emit(picture)
+            sim.emit(sound)
+            sim.advance(0.1)
+        left = sim.snapshot()
+        assert len(left["activations"]) <= 2 * len(left["spikes"])
+        sim.emit(word)
+        assert written(sim, out) == ["fuse"]
+
+
 def test_every_signal_has_a_limit() -> None:
     m = rs.Module("m")
     m.slot("text", "")

@@ -104,7 +104,7 @@ def test_an_explanation_shows_a_spike_that_ripens_and_a_closed_gate(play: Any) -
         assert (later.state, later.until) == ("ripening", 2.0)
         assert (gated.state, gated.until) == ("gated", 5.0)
         assert [is_open for _, is_open in sim.explain("m:gated").clauses[0].gates] == [False]
-        assert "may not run" in str(sim.explain("m:gated")) == repr(sim.explain("m:gated"))
+        assert "cannot run" in str(sim.explain("m:gated")) == repr(sim.explain("m:gated"))
 
 
 def test_an_explanation_lists_condition_pathways_and_utility(play: Any) -> None:

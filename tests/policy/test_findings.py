@@ -2,6 +2,7 @@
 
 import inspect
 import queue
+import types
 from typing import Any
 
 import pytest
@@ -340,6 +341,21 @@ def test_a_forgotten_await_is_reported(scene: Scene) -> None:
     found = scene.findings(inspect.getsource)
     assert found["await", "m:later"].endswith("without effect: write await ctx.sleep(...)")
     assert found["await", "m:plain"].endswith("without effect: write await ctx.sleep(...) in an async def")
+
+
+def test_a_rule_that_replaces_a_slot_instead_of_writing_it_is_reported(scene: Scene) -> None:
+    place = types.ModuleType("place")
+    place.out = scene.out  # type: ignore[attr-defined]
+
+    @scene.module.rule(when=scene.heard, writes=scene.out)
+    async def say(ctx: rs.RuleContext) -> None:
+        place.other = 1  # type: ignore[attr-defined]
+        place.out = "hello"  # type: ignore[attr-defined]
+
+    ((kind, subject), text), *others = scene.findings(inspect.getsource).items()
+    assert (kind, subject, others) == ("assignment", "m:say", [])
+    line = say.function.__code__.co_firstlineno + 3
+    assert text.endswith(f"replaces the slot place.out in line {line}, for all agents: write ctx[place.out] = ...")
 
 
 def test_the_built_in_modules_together_have_no_false_finding() -> None:

@@ -1,5 +1,6 @@
 """A policy is immutable and can be shared. Its parts have names."""
 
+import re
 from collections.abc import Callable
 from typing import Any
 
@@ -147,3 +148,9 @@ def test_an_added_rule_can_refer_to_a_setting() -> None:
 )
 def test_a_rule_that_does_not_fit_is_refused(rule: Any, text: str) -> None:
     assert text in faults(lambda: policy.with_rule(rule))
+
+
+@pytest.mark.parametrize("wrong", [None, 3, len])
+def test_a_question_about_something_that_is_no_rule_names_the_value(wrong: Any) -> None:
+    with pytest.raises(rs.DeclarationError, match=re.escape(f"the policy has no rule {str(wrong)!r}")):
+        rs.compile().utility(wrong)

@@ -65,7 +65,9 @@ def measured_grades() -> Result:
     chosen: list[tuple[str, str, int]] = []
     for text, grades in graded().items():
         before = normalise(befores[text]).unguessed
-        ranks = {one.line.text: one.rank for one in responses_to(material(), normalise(text).unguessed, before, dark=False)}
+        ranks = {
+            one.line.text: one.rank for one in responses_to(material(), normalise(text).unguessed, before, dark=False)
+        }
         best = max(grades, key=lambda reply: ranks.get(reply, -9.0))
         chosen.append((text, best, grades[best]))
     shares = {

@@ -2,6 +2,7 @@
 
 import asyncio
 import gc
+import math
 from asyncio import sleep  # in these tests, `sleep` takes only virtual time
 from typing import Any
 
@@ -341,6 +342,12 @@ def test_the_method_advance_refuses_a_negative_time() -> None:
         sim.advance(-1)
 
 
+@pytest.mark.parametrize("seconds", [math.nan, math.inf])
+def test_the_method_advance_refuses_a_time_that_never_comes(seconds: float) -> None:
+    with simulate() as sim, pytest.raises(ValueError, match=rf"advance\({seconds}\): write a finite number of seconds"):
+        sim.advance(seconds)
+
+
 # ---------------------------------------------------------------------------------------- wrong use
 
 
@@ -359,6 +366,10 @@ def test_a_simulation_can_be_used_only_within_its_with_block_and_only_once() -> 
             act()
     with sim:
         pass
+    for act in (lambda: sim.emit(rs.startup), lambda: sim.advance(1), sim.settle, lambda: sim.__exit__()):
+        with pytest.raises(rs.EngineError, match="has ended: act on it inside its `with` block"):
+            act()
+    assert sim.now == 0.0
     with pytest.raises(rs.EngineError, match="a context runs once"):
         sim.__enter__()
 

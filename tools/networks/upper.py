@@ -40,7 +40,9 @@ def upper_layers(torch: Any, first: int, dropout: float = 0.1) -> Any:
 
         def forward(self, tokens: Any, bias: Any) -> Any:
             shape = *tokens.shape[:2], HEADS, WIDTH // HEADS
-            query, key, value = (part(tokens).view(shape).transpose(1, 2) for part in (self.query, self.key, self.value))
+            query, key, value = (
+                part(tokens).view(shape).transpose(1, 2) for part in (self.query, self.key, self.value)
+            )
             heed = (query @ key.transpose(2, 3) / (WIDTH // HEADS) ** 0.5 + bias).softmax(-1)
             joined = (heed @ value).transpose(1, 2).reshape(tokens.shape)
             tokens = self.joined_norm(tokens + self.drop(self.joined(joined)))

@@ -21,6 +21,7 @@ export const LOSSES = {
   resigned: "the rule resigned",
   eliminated: "its patience ran out while others waited",
   withdrawn: "the spike was withdrawn",
+  doubled: "another attempt of the rule holds it",
   retired: "the rule retired",
 };
 
@@ -104,13 +105,13 @@ export interface ClauseView {
   gates: GateView[];
   /** The addends of the pathway with the least utility. This pathway decides the clause's utility. */
   terms: Term[];
-  /** The number of the clause's pathways. */
+  /** The number of the clause's pathways; at most 256, even if it has more. */
   pathways: number;
   /** The number of the clause's predicates. Each predicate adds ln 2. */
   predicates: number;
   /** The sum of all addends. */
   utility: number;
-  /** Utility × weight: the effective utility without a cooldown. */
+  /** The effective utility (utility × weight) of a rule that has recovered. */
   base: number;
 }
 
@@ -194,7 +195,7 @@ export interface Merged {
   into: number;
 }
 
-/** A signal that the rule lacked, and the rules that may raise it. */
+/** A signal that the rule lacked, the reason why it was missing (`words`), and the rules that may raise it. */
 export interface Missing {
   signal: string;
   words: string;
@@ -254,13 +255,17 @@ export interface Raiser {
   rule: string;
   /** The outcome of the rule's run, or `running`, or `not run`. */
   outcome: string;
-  /** The time of the outcome (seconds); None without an outcome. */
+  /** The time at which the run ended (seconds). Without a run, the time at which the rule's furthest attempt stopped. None if neither has ended. */
   time: number | null;
   /** The outcome as a sentence. */
   words: string;
 }
 
-/** A rule as declared. `raises` has all signals that it may raise, including those of the slots that it writes. */
+/**
+ * A rule as declared. Its times are in seconds, and its `origin` is a file and a line.
+ *
+ * `raises` has all signals that the rule may raise, including those of the slots that it writes.
+ */
 export interface RuleView {
   name: string;
   module: string;
@@ -374,7 +379,11 @@ export type TraceRecord =
   | Settled
   | Gap;
 
-/** A ready activation waits for the rules `for_`: rivals, or runs that hold a slot (L15). */
+/**
+ * A ready activation waits for the rules `for_`: rivals, or runs that hold a slot (L15).
+ *
+ * The wait ends at `until` at the latest, because the patience of the rivals ends then; None without such a limit.
+ */
 export interface Waits {
   kind: "waits";
   time: number;
@@ -406,7 +415,7 @@ export interface ActivationState {
   lacks: string[];
   /** The rules that it waits for, and by how many nats each is ahead (0 for a taken slot or a tie). */
   waits_for: [string, number][];
-  /** The time (seconds) by which the activation runs or gives a spike up; None if nothing limits the wait. */
+  /** The time (seconds) by which the activation runs, times out or gives a spike up; None without a limit. */
   until: number | null;
 }
 
@@ -419,7 +428,7 @@ export interface Hello {
   type: "hello";
   /** The version of the protocol. */
   v: number;
-  /** The secret id of the conversation to show; its visitor's page has the id. */
+  /** The secret id of the conversation to show; the visitor's chat page has this id. */
   session?: string;
   /** The name of the conversation to show, as in `Conversations`. */
   visitor?: string;
@@ -595,7 +604,7 @@ export interface Conversations {
   more: number;
 }
 
-/** A clause: its effective utility (nats), and whether each slot predicate is true. */
+/** A clause: its effective utility (nats), and its slot predicates: each as text, and whether it is true now. */
 export interface ExplainedClause {
   effective: number;
   gates: [string, boolean][];

@@ -15,7 +15,8 @@ class Raiser:
     Attributes:
         outcome: The outcome of the rule's run, or ``running``, or ``not run``.
         words: The outcome as a sentence.
-        time: The time of the outcome (seconds); None without an outcome.
+        time: The time at which the run ended (seconds). Without a run, the time at which the rule's furthest attempt
+            stopped. None if neither has ended.
     """
 
     rule: str
@@ -26,7 +27,7 @@ class Raiser:
 
 @dataclass(frozen=True, slots=True)
 class Missing:
-    """A signal that the rule lacked, and the rules that may raise it."""
+    """A signal that the rule lacked, the reason why it was missing (`words`), and the rules that may raise it."""
 
     signal: str
     words: str
@@ -48,10 +49,10 @@ class WhyNot:
 
     Attributes:
         rule, spike, signal, time: The rule and the spike in question; the time is the spike's birth (seconds).
-        verdict: The last step that the rule reached in its best attempt.
-        words: The reason for the verdict, in a sentence or two.
+        verdict: The furthest step that an attempt of the rule reached.
+        words: The reason for the verdict, as text.
         at: The time at which the verdict was decided (seconds); None while it is undecided.
-        clause: The number of the clause that took a spike; None if no clause did.
+        clause: The number of that attempt's clause, from 0; None if there was no attempt.
         missing: The signals that the rule lacked; empty if it lacked none, or if the verdict has another reason.
         moments: The rule's history for this cause. If there are more than 200 moments, one moment takes the place of
             those in the middle.

@@ -57,10 +57,10 @@ class ClauseView:
     Attributes:
         condition: The clause as text.
         terms: The addends of the pathway with the least utility. This pathway decides the clause's utility.
-        pathways: The number of the clause's pathways.
+        pathways: The number of the clause's pathways; at most 256, even if it has more.
         predicates: The number of the clause's predicates. Each predicate adds ln 2.
         utility: The sum of all addends.
-        base: Utility × weight: the effective utility without a cooldown.
+        base: The effective utility (utility × weight) of a rule that has recovered.
     """
 
     condition: str
@@ -75,7 +75,10 @@ class ClauseView:
 
 @dataclass(frozen=True, slots=True)
 class RuleView:
-    """A rule as declared. ``raises`` has all signals that it may raise, including those of the slots that it writes."""
+    """A rule as declared. Its times are in seconds, and its `origin` is a file and a line.
+
+    `raises` has all signals that the rule may raise, including those of the slots that it writes.
+    """
 
     name: str
     module: str

@@ -23,20 +23,21 @@ BY_TIME = attrgetter("time")
 class Attempt:
     """One activation of a rule, as far as the trace shows it.
 
-    `lacks` has the signals for which the attempt has no spike. When the attempt gives up its last spike, `lacks` stays
-    as it was before this loss. `complete` is the time at which the attempt took its last missing spike (seconds); None
-    while a spike is missing. `started` is None until the run starts. `settled` is None until the run ends.
+    `lacks` has the signals for which the attempt has no spike. If the attempt loses its last spikes in one instant,
+    `lacks` stays as it was before that instant. `complete` is the time at which the attempt took its last missing spike
+    (seconds); None while a spike is missing. `started` is None until the run starts. `settled` is None until the run
+    ends.
     """
 
     id: int
     rule: str
     clause: int
     records: list[t.Record] = field(default_factory=list[t.Record])
-    held: list[t.Held] = field(default_factory=list[t.Held])
+    held: list[t.Held] = field(default_factory=list[t.Held])  # all spikes that it took, also those that it lost
     lacks: tuple[str, ...] = ()
     complete: float | None = None
     waits: list[t.Waits] = field(default_factory=list[t.Waits])
-    gave_up: list[t.GaveUp] = field(default_factory=list[t.GaveUp])
+    gave_up: list[t.GaveUp] = field(default_factory=list[t.GaveUp])  # the latest losses, all of one instant
     started: t.Started | None = None
     settled: t.Settled | None = None
     _missing: tuple[str, ...] = ()  # the signals for which it has no spike now
@@ -62,7 +63,7 @@ class Attempt:
 
     @property
     def spikes(self) -> Iterable[int]:
-        """The numbers of the attempt's spikes: those with which its run began. Without a run, all that it ever took."""
+        """The numbers of the spikes with which the attempt's run began; without a run, of all spikes that it took."""
         return [held.spike for held in self.held] if self.started is None else self.started.spikes
 
     def take(self, record: t.Held) -> None:
@@ -74,10 +75,7 @@ class Attempt:
         self.gave_up.clear()
 
     def lose(self, record: t.GaveUp) -> None:
-        """Record a spike that the activation gave up.
-
-        If the activation gives up all its spikes in one instant, `lacks` stays as it was before the first of these losses.
-        """
+        """Record a spike that the activation gave up."""
         if not self.gave_up or self.gave_up[-1].time != record.time:
             self._before = self._missing
             self.gave_up.clear()
@@ -274,7 +272,7 @@ class Rivals:
     def ahead(self, name: str, rule: RuleView, attempt: Attempt, time: float) -> str:
         """Return a text in brackets: by how much effective utility (nats) the rule `name` is ahead of `rule`.
 
-        The text is empty if `rule` is ahead.
+        If both utilities are equal, the text says so. It is empty if `rule` is ahead.
         """
         other = self._description.rule(name)
         if other is None or name == rule.name:
@@ -318,7 +316,7 @@ class Rivals:
     def _answered(self, rule: RuleView, time: float) -> tuple[str, int]:
         """Return the other rule that first answered the group, and the number of its activation.
 
-        Only rules that write a slot of `rule`, and answers up to `time` (seconds) count.
+        Only rules that write a slot of `rule` count, and only answers up to `time` (seconds).
         """
         if rule.name not in self._first:
             slots = set(rule.writes)

@@ -4,6 +4,8 @@ from __future__ import annotations
 
 import asyncio
 import contextlib
+from collections.abc import Sequence
+from dataclasses import astuple
 from time import perf_counter
 from typing import TYPE_CHECKING
 
@@ -15,6 +17,10 @@ from ravestate.board.source import LiveSource, RecordedSource, Source
 from ravestate.board.trace_file import Recordings
 from ravestate.board.why_not import why_not
 from ravestate.board.wire import data_of
+from ravestate.draw.fold import fold
+from ravestate.draw.graph import Diagram
+from ravestate.draw.layout import lay_out
+from ravestate.draw.text import label_size, node_size
 from ravestate.errors import RavestateError
 from ravestate.modules.platform.webio.channel import Bucket, Channel
 from ravestate.modules.platform.webio.fields import ProtocolError
@@ -24,13 +30,6 @@ if TYPE_CHECKING:
     from ravestate.modules.platform.webio.access import Access
     from ravestate.modules.platform.webio.session import Session
     from ravestate.modules.platform.webio.sessions import Sessions
-from collections.abc import Sequence
-from dataclasses import astuple
-
-from ravestate.draw.fold import fold
-from ravestate.draw.graph import Diagram
-from ravestate.draw.layout import lay_out
-from ravestate.draw.text import label_size, node_size
 
 FRAME = 0.05  # the minimum number of seconds between two frames of records
 

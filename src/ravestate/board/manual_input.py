@@ -15,7 +15,7 @@ SAMPLES: tuple[Any, ...] = (True, 0, 0.5, "", [], {})  # one value of each JSON 
 
 
 def check_value(slot: Slot[Any], value: object, holds: object) -> None:
-    """Refuse a JSON value that a user may not write to a slot. `Slot.check` makes further checks during the write.
+    """Raise a `RavestateError` if a user may not write a value to a slot. The write itself checks more (`Slot.check`).
 
     If the slot declares no type, the value must have the type of the current value, `holds`.
     """
@@ -33,7 +33,7 @@ def check_value(slot: Slot[Any], value: object, holds: object) -> None:
 
 
 def check_payload(signal: Signal[Any], command: Emit, slot: Slot[Any] | None, holds: object = None) -> None:
-    """Refuse a payload that is missing, superfluous, or of the wrong type.
+    """Raise a `RavestateError` if a payload is missing, superfluous, or of the wrong type.
 
     If the signal belongs to a slot, `slot` is that slot, and `holds` its current value.
     """

@@ -54,7 +54,7 @@ class Hello(_Frame):
 
     Attributes:
         v: The version of the protocol.
-        session: The secret id of the conversation to show; its visitor's page has the id.
+        session: The secret id of the conversation to show; the visitor's chat page has this id.
         visitor: The name of the conversation to show, as in `Conversations`.
         recording: The name of the uploaded recording to show.
         token: The server's token, if the server asks for one.
@@ -240,7 +240,7 @@ class Conversations:
 
 @dataclass(frozen=True)
 class ExplainedClause:
-    """A clause: its effective utility (nats), and whether each slot predicate is true."""
+    """A clause: its effective utility (nats), and its slot predicates: each as text, and whether it is true now."""
 
     effective: float
     gates: tuple[tuple[str, bool], ...]

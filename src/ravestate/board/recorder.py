@@ -4,8 +4,8 @@ Inspectors have no queues. Records are numbered, and each inspector reads the re
 misses records that are already deleted, and delays nothing else.
 
 Making records is expensive for a busy agent, so each recorder has a rate limit. It allows a burst, then a steady rate,
-and a higher rate while the process is idle. Beyond the limit, a recorder stops listening for a moment, and the engine
-makes no records. A `Gap` says how many spikes the recorder missed.
+and a higher rate while the process is idle. Beyond the limit, a recorder stops listening for a moment. Without
+other observers, the engine then makes no records. A `Gap` says how many spikes the recorder missed.
 
 All recorders of an agent share one limit on the number of records. If the total exceeds this limit, the recorders with
 the most records are cut to the same length.

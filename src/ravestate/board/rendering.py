@@ -1,4 +1,4 @@
-"""Values as text: JSON if it can express them, or else their ``repr``; long texts are cut.
+"""Values as text: JSON if JSON can express the value, or else the ``repr``. Long texts are cut.
 
 Values come from users' code. They may be huge, endlessly deep, or raise errors when they are read. None of this makes
 rendering fail.
@@ -51,6 +51,7 @@ def render(value: object, most: int = 2000) -> Rendered:
         "<class 'object'>"
     """
     kind = type(value)
+    # An int of 2 × `most` bits has fewer than `most` digits.
     if value is None or kind is bool or (kind is int and abs(cast("int", value)) < 1 << 2 * most):
         return Rendered(json.dumps(value))
     if kind is str:

@@ -13,6 +13,7 @@ DEEPEST = 30  # the maximum depth of nested containers; the content of deeper co
 LONGEST = 100_000  # the maximum number of characters of a text, or of bytes, within a value; the rest is left out
 
 TEXTS: dict[Any, Any] = {kind.__repr__: kind for kind in (str, bytes, bytearray)}
+"""``__repr__`` method → the built-in text type that defines it."""
 
 _ROWS: tuple[Any, ...] = (list, tuple, set, frozenset, deque)
 _TABLES: tuple[Any, ...] = (dict, OrderedDict, defaultdict, Counter, MappingProxyType)

@@ -1,4 +1,4 @@
-"""Recorded traces: JSON files with a policy and its records, which the board shows without the agent."""
+"""Recorded traces: JSON files with a policy and the records of a trace. The board shows them without the agent."""
 
 from __future__ import annotations
 
@@ -53,7 +53,10 @@ SURROGATE = re.compile(r"\\u[dD][89a-fA-F]")  # a pattern for one half of a surr
 
 @dataclass(frozen=True, slots=True)
 class Recording:
-    """A recorded trace and its policy; it is `whole` if the trace begins with the start of the context."""
+    """A recorded trace, its policy, and the agent's name (`title`).
+
+    The recording is `whole` if the trace begins with the start of the context.
+    """
 
     title: str
     description: Description
@@ -98,7 +101,7 @@ def save_trace(
 ) -> None:
     """Write a trace, e.g. the ``trace`` of a context with ``trace=True``, to a file for the board.
 
-    If writing fails with an OSError, an earlier trace in this file stays.
+    For `title` and `whole`, see `Recording`. If writing fails with an OSError, an earlier trace in this file stays.
     """
     data = {
         "format": FORMAT,

@@ -29,6 +29,7 @@ KINDS: dict[str, type[Any]] = {kind.__name__.lower(): kind for kind in (*get_arg
 """Name of a kind of record → its class."""
 
 RENDERED = {"payload": PAYLOAD, "value": VALUE}
+"""Name of a field that is rendered as text → the maximum number of characters."""
 
 
 def _shape(name: str, kind: type[Any]) -> Any:

@@ -42,6 +42,7 @@ class RavestateAgent(Agent):
     Raises:
         DeclarationErrors: The modules or the settings have faults.
         DeclarationError: The agent can neither hear nor speak.
+        UsageError: There is no such module, or the agent file has mistakes.
 
     Example:
         ```python

@@ -48,6 +48,7 @@ class RavestateProcessor(FrameProcessor):
     Raises:
         DeclarationErrors: The modules or the settings have faults.
         DeclarationError: The agent can neither hear nor speak.
+        UsageError: There is no such module, or the agent file has mistakes.
 
     Example:
         ```python

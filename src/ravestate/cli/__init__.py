@@ -7,7 +7,6 @@ never a traceback.
 from __future__ import annotations
 
 import argparse
-import contextlib
 import logging
 import sys
 from collections.abc import Sequence
@@ -78,7 +77,9 @@ def main(argv: Sequence[str] | None = None) -> int:
     level = [logging.WARNING, logging.INFO, logging.DEBUG][min(verbosity, 2)]
     logging.basicConfig(level=level, format="%(levelname)s %(name)s: %(message)s")
     try:
-        return import_module(f"ravestate.cli.{options.command}").run(options)
+        code: int = import_module(f"ravestate.cli.{options.command}").run(options)
+        sys.stdout.flush()  # here a failure gives a message
+        return code
     except UsageError as error:
         print(f"ravestate {options.command}: {error}", file=sys.stderr)
         return 2
@@ -89,6 +90,13 @@ def main(argv: Sequence[str] | None = None) -> int:
         return 130
     except BrokenPipeError:
         return 0
+    except OSError as error:
+        from ravestate.modules.platform.conio.console import FULL
+
+        if error.errno not in FULL:
+            raise
+        print(f"ravestate {options.command}: the output cannot be written: {error.strerror}", file=sys.stderr)
+        return 1
 
 
 def script() -> int:
@@ -106,13 +114,18 @@ def script() -> int:
     from ravestate.runtime import workers
 
     _open_streams()
-    code = main()
+    try:
+        code = main()
+    except SystemExit as ended:  # argparse raises it, for instance after the help
+        code = int(ended.code or 0)
     workers.LAST_GRACE = LAST_GRACE
     atexit._run_exitfuncs()  # pyright: ignore[reportPrivateUsage]  # this runs the handlers that wait for threads
+    for name in ("stdout", "stderr"):
+        try:
+            getattr(sys, name).flush()
+        except (OSError, ValueError):
+            setattr(sys, name, None)  # or else the interpreter reports the failure at its end
     if any(thread.daemon for thread in threading.enumerate()):
-        for stream in (sys.stdout, sys.stderr):
-            with contextlib.suppress(OSError, ValueError):
-                stream.flush()
         os._exit(code)
     return code
 

@@ -18,9 +18,7 @@ if TYPE_CHECKING:
 
 def add_arguments(parser: argparse.ArgumentParser) -> None:
     agent.add_arguments(parser)
-    parser.epilog = (
-        "Exit code 1: the agent has faults, or a rule would fail at run time (findings: undeclared, unknown, await)."
-    )
+    parser.epilog = "Exit code 1: the agent has faults, or a rule would fail at run time (findings: undeclared, unknown, await, assignment)."
     parser.add_argument("--utilities", action="store_true", help="also list every rule with its utility in nats")
 
 

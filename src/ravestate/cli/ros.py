@@ -5,6 +5,7 @@ from __future__ import annotations
 import argparse
 import asyncio
 import json
+import math
 import sys
 from collections.abc import Awaitable, Callable, Sequence
 from pathlib import Path
@@ -35,7 +36,9 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
     checking.add_argument("modules", nargs="*", metavar="MODULE", help="the agent: modules or an agent file")
     checking.add_argument("-f", "--file", metavar="FILE", help="an agent file")
     listing = actions.add_parser("topics", help="list the topics, services and actions of the network")
-    echoing = actions.add_parser("echo", help="print the messages of a topic, one line of JSON for each")
+    echoing = actions.add_parser(
+        "echo", help="print the messages of a topic, one line of JSON for each; NaN and infinity become null"
+    )
     echoing.add_argument("topic", metavar="TOPIC", help="the topic's name, such as /chat")
     echoing.add_argument("--type", help="the type of its messages, if no node publishes yet")
     echoing.add_argument("-n", "--count", type=int, default=0, help="end after this many messages")
@@ -234,13 +237,13 @@ async def _echo(options: argparse.Namespace, node: Node, graph: dict[str, Any]) 
 
 
 def _shortened(value: Any) -> Any:
-    """Return plain data with only the beginnings of long lists, such as the pixels of an image."""
+    """Return plain data for JSON, with only the beginnings of long lists, such as the pixels of an image."""
     if isinstance(value, dict):
         fields = cast("dict[str, Any]", value)
         return {key: _shortened(item) for key, item in fields.items()}
     if isinstance(value, list):
         items = cast("list[Any]", value)
         if len(items) > LONG:
-            return [*items[:8], f"... {len(items)} values"]
+            return [*_shortened(items[:8]), f"... {len(items)} values"]
         return [_shortened(item) for item in items]
-    return value
+    return None if isinstance(value, float) and not math.isfinite(value) else value

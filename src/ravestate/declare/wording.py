@@ -38,9 +38,9 @@ def shown(value: object) -> str:
 
 
 def said(exception: BaseException) -> str:
-    """Return the message of an exception, or its `repr` if making the message fails."""
+    """Return the message of an exception, or its `repr` if it has no message or if making the message fails."""
     try:
-        return str(exception)
+        return str(exception) or shown(exception)
     except Exception:  # the exception's `__str__` may raise anything, and the message must still appear
         return shown(exception)
 

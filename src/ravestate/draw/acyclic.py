@@ -15,7 +15,7 @@ from collections.abc import Sequence
 from ravestate.policy.components import components
 
 STRONG = 1 << 20
-"""The weight of a strong edge. The layout reverses such an edge only if weak edges alone cannot break the cycle."""
+"""The minimum weight of a strong edge. The layout reverses a strong edge only if weak edges cannot break the cycle."""
 
 
 def feedback_arcs(count: int, edges: Sequence[tuple[int, int, int]]) -> list[bool]:

@@ -17,8 +17,8 @@ from ravestate.draw.graph import EdgeKind
 VertexKind = Literal["node", "label", "dummy"]
 
 _GAPS = {(True, True): 16.0, (True, False): 12.0, (False, True): 12.0, (False, False): 9.0}
-"""The minimum gap between two adjacent vertices (pixels). Key: whether the upper vertex is not a dummy, and whether the
-lower vertex is not a dummy."""
+"""The minimum gap between two adjacent vertices (pixels). Key: whether the upper vertex is a node or a label (False for
+a dummy), and the same for the lower vertex."""
 _SOLID: tuple[EdgeKind, ...] = ("writes", "emits")  # solid lines may overlap; dashed lines would blur each other
 _PITCH = 10.0  # pixels between the ports of one side, if there is room
 _MARGIN = 10.0  # pixels from a corner, which may be round, to the first or last port
@@ -39,7 +39,10 @@ class Link:
 
 @dataclass(slots=True)
 class Port:
-    """A point where lines touch a vertex: on its `right` or left side, `offset` pixels below its middle."""
+    """A point where lines touch a vertex: on its `right` or left side, `offset` pixels below its middle.
+
+    `enters` says whether the arrows of these lines lead into the vertex.
+    """
 
     vertex: int
     right: bool

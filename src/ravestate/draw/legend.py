@@ -15,6 +15,7 @@ NARROWEST = 560.0  # the width in pixels that a legend may use even if the pictu
 _ROW = 26.0  # pixels: height of a row
 _GAP = 20.0  # pixels between entries
 _SAMPLE: dict[NodeKind, float] = {kind: 18.0 if kind in JUNCTIONS else 30.0 for kind in NODES}
+"""Kind of node → the width of its sample (pixels)."""
 _HIGH = 18.0  # pixels: height of a sample node
 _EDGE = 38.0  # pixels: length of a sample edge
 _TEXT = 7.0  # pixels from a sample to its text

@@ -1,4 +1,4 @@
-"""Edge routing: the lines between vertices, as lists of points. The height of each vertex (its y) is known."""
+"""Edge routing: the lines between vertices, as lists of points. The y coordinate of each vertex is known."""
 
 from __future__ import annotations
 
@@ -26,12 +26,16 @@ class Routed:
 
 
 def route(graph: LayeredGraph, middle: Sequence[float]) -> Routed:
-    """Put the layers side by side, with room for the lines between them, and find the route of each line."""
+    """Put the layers side by side, with room for the lines between them, and find the route of each line.
+
+    `middle` has the y coordinate of each vertex's middle (pixels).
+    """
     gaps: list[list[int]] = [[] for _ in graph.order]
     for number in range(len(graph.segments)):
         gaps[graph.layer[graph.ends(number)[0]]].append(number)
     across = [0.0] * len(graph.layer)
-    # segment → the x at which its line leaves the height of its left end, and reaches the height of its right end
+    # segment → two x coordinates: where its line leaves the y of its left end, and where it reaches the y of its right
+    # end
     turns = [(0.0, 0.0)] * len(graph.segments)
     x = 0.0
     for layer, numbers in zip(graph.order, gaps, strict=True):

@@ -84,6 +84,7 @@ class Straightener:
         return saved
 
     def join(self, u: int, v: int) -> None:
+        """Let the blocks of two vertices move together from now on."""
         a, b = self.block[u], self.block[v]
         if a is not b:
             a += b

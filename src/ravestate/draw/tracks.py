@@ -18,7 +18,7 @@ Segment = tuple[int, int, float, float]
 
 _NEAR = 5.0  # pixels: closer stubs look like one line
 _APART = 7.0  # pixels: minimum distance between two vertical lines on one track
-_LEVEL = 0.01  # pixels: a net needs no track if the heights of its ends differ by less
+_LEVEL = 0.01  # pixels: a net needs no track if the y coordinates of its ends differ by less
 _TOUCHING = 4 * STRONG  # the cost of overlapping stubs, far above the cost of all crossings together
 
 

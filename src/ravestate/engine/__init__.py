@@ -1,4 +1,6 @@
-"""The automaton: events and times in, effects out. Pure: no clock, thread, lock, random number or hash order.
+"""The automaton: events and times go in, effects come out.
+
+The automaton is pure. It uses no clock, thread, lock or random number, and does not depend on hash order.
 
 The code cites the laws of the automaton by number, such as L15. ``docs/explanation/processing-model.md`` explains the
 laws, and ``tests/laws`` has one file of tests for each law.
@@ -13,13 +15,13 @@ passes through the parts in this order:
    makes it ready (`Clause.simple`). `Holdings.complete` queues the ready activation. `Halves`, `Benches` and
    `ConflictSets` create an activation only when it may run, so most activations are never created.
 3. *Start.* `Engine.effects` runs the loop in `Parts.effects`, until a run must start or stop, or nothing is left to do.
-   Activations that need no consent start first (`Agenda.start_free`). The caller performs these effects, reports the
-   runs that have ended, and calls `Engine.effects` again.
-4. *Consent.* After all of these have started, `Agenda.consent_round` lets the other ready activations ask.
+   Activations that need no consent start first (`Agenda.start_free`). The caller performs the returned effects, reports
+   the runs that have ended, and calls `Engine.effects` again.
+4. *Consent.* When these activations have started, `Agenda.consent_round` lets the other ready activations ask.
    `Consent.ask` looks for rivals, and a `Horizon` judges whether each rival may still become ready. With consent,
    `Runs.start` starts the run. Without it, `Waits.begin` keeps the `Refusal`. A `Roster` finds the rivals in a large
-   group. If a refusal is certain, `Leaders` give it without a search. `stalemate` finds activations that wait for
-   nothing but each other.
+   group. If a refusal is certain, `Leaders` give it without a search. `stalemate` finds activations that wait only for
+   each other.
 5. *End.* `Runs.finish` settles a run by the table `OUTCOMES`.
 6. *Wake.* A change that may lift a refusal marks a causal group in `State.dirty`, or a *hope* in `State.stirred`, or
    puts the activation into `State.asking`. A hope is something outside the activation's groups that may lift its

@@ -5,7 +5,7 @@ meets it. With consent, the activation becomes a run of the rule. Every clause a
 holds no spike yet. No object represents a stand-by: the engine creates an object only when the first spike comes.
 
 - `GATHERING`: the activation lacks a spike, a spike is too young, or a predicate on a slot is false.
-- `READY`: the activation holds all its spikes, all are old enough, and it asks for consent.
+- `READY`: the activation holds all its spikes, all are old enough, and it asks for consent or, if it needs none, starts.
 - `WAITING`: a group refused consent; the activation asks again when something changes.
 - `RUNNING`: the rule's function runs.
 - `CANCELLING`: the engine has cancelled the function, which is cleaning up.
@@ -17,7 +17,7 @@ A step that is not in the table of transitions is a bug in the engine.
 from __future__ import annotations
 
 import enum
-from typing import TYPE_CHECKING, Final
+from typing import TYPE_CHECKING, Any, Final
 
 from ravestate.engine.group import NOTHING
 from ravestate.errors import EngineError
@@ -107,6 +107,7 @@ class Activation:
             activation's patience ends in that group (seconds; L16).
         refusal: The reasons for which it waits; None unless it waits.
         stands_on: The non-detached spikes of the run: the parents of the spikes that it raises.
+        origin: The origin of the run (`Spike.origin`).
         groups: The groups in which the run took its slots when it began. They may have merged since.
         wrote: Whether the run has written a slot.
         deadline: The time at which the run times out (seconds).
@@ -125,6 +126,7 @@ class Activation:
         "missing",
         "newest",
         "number",
+        "origin",
         "place",
         "patience_ends",
         "refusal",
@@ -151,6 +153,7 @@ class Activation:
         self.patience_ends: dict[Group, float] = NOTHING  # replaced on first use
         self.refusal: Refusal | None = None
         self.stands_on: tuple[Spike, ...] = ()
+        self.origin: Any = None
         self.groups: tuple[Group, ...] = ()
         self.wrote = False
         self.deadline = NEVER

@@ -54,7 +54,7 @@ class Agenda:
         self.time = 0.0
         """The time (seconds) at which the queue was last put in order."""
         self.breakers: list[tuple[tuple[float, int, int], Activation]] = []
-        """The activations that wait for nothing but each other, the best first."""
+        """The activations that wait only for each other, each with its sort key, the best first."""
 
     def start_free(self) -> None:
         """Start ready activations that need no consent, in the order of their newest spikes.
@@ -210,7 +210,7 @@ class Agenda:
         return (cause, -self.state.effective(clause), clause.index, activation.id, activation)
 
     def _break_stalemate(self) -> None:
-        """Start the best of the activations that wait for nothing but each other, if there are any."""
+        """Start the best of the activations that wait only for each other, if there are any."""
         state, breakers = self.state, self.breakers
         if not (state.refused or state.stuck):
             breakers.clear()  # no activation is stuck now

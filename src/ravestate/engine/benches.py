@@ -9,8 +9,9 @@ A clause has benches only if no better clause competes with it (`Half.sole`). It
 group refuses them only while a slot is taken there. If a group refuses the head, the engine creates a new head for the
 next first spike. The new head asks in the same round of consent.
 
-So the pairs with older first spikes ask first. In consent, older causal groups go first. Both orders are the same: no
-rule raises these signals, so each spike begins a group. Before a group merges, its spikes leave their benches.
+So the pairs with older first spikes ask first. In consent, older causal groups go first. Both orders are the same: only
+detached rules may raise these signals, so each spike begins a group. Before a group merges, its spikes leave their
+benches.
 `Consent` treats each spike on a bench with a counterpart as a ready activation. Activations with less utility wait for
 it.
 """

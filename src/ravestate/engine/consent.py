@@ -49,7 +49,7 @@ class Consent:
 
         Args:
             activation: The activation.
-            stuck: Activations that count as doing nothing, because they wait for nothing but each other.
+            stuck: Activations that count as doing nothing, because they wait only for each other.
             commit: Whether to change rivals: start their patience, and eliminate rivals whose patience has ended.
         """
         clause = activation.clause
@@ -130,7 +130,7 @@ class Consent:
         for member in (*living, None):
             if member is None:
                 if outside:
-                    break  # that activation would take the spike first, so the stand-by is no rival
+                    break  # the activation outside would take the spike first, so the stand-by is no rival
             elif member.state >= RUNNING or horizon.is_inert(member) or _is_covered(member, sure):
                 continue
             strength, roots = horizon.judge(rival, member, group)

@@ -19,7 +19,10 @@ if TYPE_CHECKING:
 
 
 class Kind(enum.IntEnum):
-    """A kind of deadline. Deadlines at the same time fall due in this order: gains before losses."""
+    """A kind of deadline. Deadlines at the same time fall due in this order.
+
+    So an activation becomes ready before it could lose a spike.
+    """
 
     RIPEN = 0  # all spikes of an activation are old enough
     LOOK = 1  # a spike is old enough for a detached need

@@ -19,19 +19,29 @@ class Run:
         run: The number of the run, which every event of the run carries. Runs are numbered in the order of their start.
         rule: The rule whose function to call.
         payloads: Key: the qualified name of a signal whose spike the run holds; value: the spike's payload.
-        values: Key: the qualified name of a slot that the run may read; value: the slot's current value (law L13).
+        values: Key: the qualified name of a slot that the run may read; value: its value when the run starts (law L13).
+        origin: The object that came from outside with the event that led to the run; None if there was no object.
     """
 
     run: int
     rule: Rule[Any, Any]
     payloads: Mapping[str, Any]
     values: dict[str, Any]
+    origin: Any
 
-    def __init__(self, run: int, rule: Rule[Any, Any], payloads: Mapping[str, Any], values: dict[str, Any]) -> None:
+    def __init__(
+        self,
+        run: int,
+        rule: Rule[Any, Any],
+        payloads: Mapping[str, Any],
+        values: dict[str, Any],
+        origin: Any = None,
+    ) -> None:
         self.run = run
         self.rule = rule
         self.payloads = payloads
         self.values = values
+        self.origin = origin
 
 
 @dataclass(slots=True)

@@ -61,8 +61,11 @@ class Engine:
         """Handle an event at the time `now` (seconds). An earlier time counts as the latest time so far.
 
         Raises:
-            UndeclaredError: The event names a signal or slot that the policy does not have.
-            EngineError: The event comes from a run that is over.
+            UndeclaredError: The policy does not have the signal or slot of the event, or a run writes a slot that its
+                rule does not declare.
+            RuleError: The value for a collection is not a mapping.
+            EngineError: The event comes from a run that is over, or is of an unknown type or kind. Or the event does
+                not fit its slot or the policy, or the time is NaN.
         """
         rested = self._parts is None
         parts = self.parts_at(now)
@@ -115,7 +118,7 @@ class Engine:
         return parts
 
     def parts_at(self, now: float) -> Parts:
-        """Let time pass until `now` (seconds), and return the parts. Use them only for events that nothing records."""
+        """Let time pass until `now` (seconds), and return the parts. Use them only if no journal records the events."""
         parts = self._parts or self.parts
         if now != parts.state.now:
             parts.pass_time(now)
@@ -174,7 +177,7 @@ class Engine:
 
     @property
     def late_turns(self) -> int:
-        """The number of deferred turns in this instant of loops that an error has named (`Loops.late`, L23)."""
+        """How many deferred turns ran in this instant after an error had named their loop (`Loops.late`, L23)."""
         return 0 if self._parts is None else self._parts.state.loops.late
 
     def read(self, slot: int) -> Any:

@@ -165,8 +165,3 @@ class Entries:
                 del live[spike]
             if not live:
                 del self.state.live[spike.signal.index]
-
-    def on_forget(self, spike: Spike) -> None:
-        """Remove a spike that is too old for every detached need, if nothing holds it."""
-        if not (spike.is_held or spike.in_halves):
-            self.forget(spike)

@@ -22,11 +22,16 @@ class Stop:
 
 @dataclass(slots=True)
 class Write:
-    """A run, or code outside the rules (``run=None``), writes a slot. The value of a collection is a whole mapping."""
+    """A run, or code outside the rules (``run=None``), writes a slot.
+
+    The value of a collection is a mapping of all its items. Code outside the rules may add an `origin`, which
+    ``ctx.origin`` returns in every rule that the write leads to.
+    """
 
     slot: str
     value: Any
     run: int | None = None
+    origin: Any = None
 
 
 @dataclass(slots=True)
@@ -50,11 +55,12 @@ class Discard:
 
 @dataclass(slots=True)
 class Emit:
-    """A run, or code outside the rules (``run=None``), raises a signal."""
+    """A run, or code outside the rules (``run=None``), raises a signal. For `origin`, see `Write`."""
 
     signal: str
     payload: Any = None
     run: int | None = None
+    origin: Any = None
 
 
 @dataclass(slots=True)

@@ -44,7 +44,7 @@ class ActivationState:
         holds: The signal and the age (seconds) of each spike that the activation holds.
         lacks: The signals of the spikes that it lacks.
         waits_for: The rules that it waits for, and by how many nats each is ahead (0 for a taken slot or a tie).
-        until: The time (seconds) by which the activation runs or gives a spike up; None if nothing limits the wait.
+        until: The time (seconds) by which the activation runs, times out or gives a spike up; None without a limit.
     """
 
     id: int
@@ -58,7 +58,7 @@ class ActivationState:
 
 @dataclass(frozen=True, slots=True, repr=False)
 class Explanation:
-    """The state of a rule at one moment. Printed, it reads as text.
+    """The state of a rule at one moment. ``str`` and ``print`` show it as text.
 
     Attributes:
         rule: The rule's name.
@@ -88,7 +88,9 @@ class Explanation:
             sums = " or ".join(" + ".join(pathway) for pathway in clause.pathways[:3])
             lines.append(f"  when {clause.condition}")
             lines.append(f"    utility {clause.utility:.6f} nats, now {clause.effective:.6f}; pathway {sums}")
-            lines += [f"    {gate}: {'true' if open_ else 'false, so it may not run'}" for gate, open_ in clause.gates]
+            lines += [
+                f"    {gate}: {'true' if open_ else 'false, so this clause cannot run'}" for gate, open_ in clause.gates
+            ]
         if not self.activations:
             lines.append("  idle: no spike is left for it to act on")
         for one in self.activations:

@@ -49,8 +49,8 @@ class Group:
     Attributes:
         taken: Key: the number of a slot that is taken in the group; value: the runs that hold the slot, or None if a
             run has finished with it.
-        entries: The group's spikes that a half holds (``halves.py``). Halves whose rules write no slot are left out,
-            unless they have `Half.kin`.
+        entries: The group's spikes that a half holds (``halves.py``), and the counterparts of benches (``benches.py``).
+            Halves whose rules write no slot are left out, unless they have `Half.kin`.
         interested: The waiting activations that ask for consent again when something changes in the group
             (`State.dirty`).
         patience_ends: The rivals under pressure that have no activation yet (L16). Key: the number of the rival's
@@ -109,14 +109,14 @@ class Group:
     def writers(self, slots: tuple[int, ...], causes: Causes) -> Iterable[Activation]:
         """Return the members that may write one of the slots, in the order in which they joined.
 
-        In a small group, return all members.
+        A small group has no roster, so it returns all members.
         """
         return self.members if self.count <= FEW else self._roster(causes).writers(slots)
 
     def causers(self, slots: tuple[int, ...], causes: Causes) -> Iterable[RulePlan]:
         """Return those of the members' rules that may trigger a writer of one of the slots.
 
-        In a small group, return the rules of all members.
+        A small group has no roster, so it returns the rules of all members.
         """
         if self.count <= FEW:
             return dict.fromkeys([member.clause.rule for member in self.members])
@@ -145,9 +145,7 @@ class Group:
         """Record that an activation has a non-detached spike of the group."""
         if self.has(activation):
             return
-        if self._others:
-            self._others[activation] = None
-        elif self._member is None:
+        if self._member is None and not self._others:
             self._member = activation
         elif self._others is NOTHING:
             self._others = {activation: None}

@@ -119,7 +119,7 @@ class Halves:
         Kin needs may only hold spikes of one causal group.
 
         Under the old policy, an activation that lost a spike took the oldest live spike, and so formed the missing
-        pairs. Under the new one, it may only take a spike of the same causal group (law L12). So each spike gets an
+        pairs. Under the new policy, it may only take a spike of the same causal group (law L12). So each spike gets an
         activation, with the first counterpart that came later.
         """
         for activations in list(self.state.active.values()):
@@ -129,7 +129,7 @@ class Halves:
                 self._share(clause, [one for one in activations if one.state < RUNNING])
 
     def _share(self, clause: Clause, activations: list[Activation]) -> None:
-        """Create the left-out activations of a clause; `activations` are all those that do not run yet."""
+        """Create the left-out activations of a clause; `activations` has all that do not run yet."""
         state, holdings = self.state, self.holdings
         own: dict[Spike, Activation] = {}  # spike → the activation that began with it
         held: set[Spike] = set()

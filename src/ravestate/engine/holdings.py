@@ -11,6 +11,7 @@ from ravestate.engine import trace
 from ravestate.engine.activation import (
     COMPLETE,
     END,
+    ENDED,
     GATHERING,
     LOSE,
     NEVER,
@@ -128,7 +129,7 @@ class Holdings:
             self.update(activation)
 
     def _rematch(self, activation: Activation, need: Need) -> None:
-        """For a need that has lost its spike, take the oldest live spike that fits, if there is such a spike (L12)."""
+        """If a live spike fits a need that has lost its spike, take the oldest such spike (L12)."""
         if need.detached:
             self.look(activation, (need,))
         else:
@@ -203,11 +204,6 @@ class Holdings:
                         state.headless = {}
                     state.headless[spike] = None
 
-    def on_ripen(self, activation: Activation) -> None:
-        """Judge an activation again, because its spikes are old enough now (L14)."""
-        activation.ripens = NEVER
-        self.update(activation)
-
     def on_expire(self, time: float, spike: Spike) -> None:
         """Make incomplete holders give up a spike that is too old for them (L14)."""
         for holder in spike.holders:
@@ -253,7 +249,34 @@ class Holdings:
         for need in (*needs, *(n for n in clause.needs if n.bit & kin)):
             if need.bit & activation.missing:
                 self._rematch(activation, need)
-        self.update(activation)
+        twins = self._twins(activation)
+        youngest = max([activation, *twins], key=by_age)
+        if len(twins) > 1:
+            self.end(youngest, "doubled")
+        if activation.state != ENDED:
+            self.update(activation)
+
+    def _twins(self, activation: Activation) -> list[Activation]:
+        """Return the other incomplete activations of the clause with the same spikes and the same patience.
+
+        Each further spike is offered to all of these activations, but only one of them can consume their spikes. While
+        that one waits or runs, a second one may still be a rival of other activations (L16). The others are superfluous.
+        If the clause never got its last spike, each new spike would add more of them (L23).
+        """
+        if not activation.clause.firm_bits:
+            return []  # nothing is consumed, so all may run
+        spikes, lacking = activation.spikes, self.state.lacking
+        needs = zip(activation.clause.needs, spikes, strict=True)
+        found = [lacking[need] if spike is None else spike.holders for need, spike in needs]
+        return [
+            other
+            for other in min(found, key=len)
+            if other is not activation
+            and other.state == GATHERING
+            and other.clause is activation.clause
+            and other.spikes == spikes
+            and other.patience_ends == activation.patience_ends
+        ]
 
     def lose_group(self, activation: Activation, group: Group, reason: str, by: Activation | None = None) -> None:
         """Make an activation give up its non-detached spikes of a group."""
@@ -265,9 +288,9 @@ class Holdings:
         self.lose(activation, needs, reason, by)
 
     def give_up(self, run: Activation, reason: str) -> None:
-        """Make all other activations of a run's rule give up the run's non-detached spikes, forever."""
+        """Make all other activations of a run's rule give up the run's non-detached spikes for good."""
         rule = run.clause.rule
-        for spike in run.stands_on:  # refuse all first, because an activation that loses one takes another
+        for spike in run.stands_on:  # refuse all first, because an activation that loses one spike takes another
             self.benches.unbench(spike)
             self.entries.refuse_for_good(spike, rule)
         for spike in run.stands_on:

@@ -19,8 +19,8 @@ steps whose strengths it needs. `_solve` runs the steps, and keeps the waiting s
 
 In a cycle of causes, a derivation needs its own result. It uses its *bound* instead: the strength proven so far, at
 first `NO`. A strength that rests on a bound is *open*. If a bound has risen when the oldest derivation of the cycle
-ends, the engine derives the cycle again. Otherwise, the open strengths are final. A strength rises at most twice, so a
-cycle of n signals takes at most 2n turns.
+ends, the engine derives the cycle again. Otherwise, the open strengths are final. A strength rises at most twice.
+So the engine derives a cycle of n signals again at most 2n times.
 """
 
 from __future__ import annotations
@@ -53,7 +53,7 @@ Step = Generator[Any, int, int]
 class Horizon:
     """The horizons of the engine's groups at one moment, for one asking activation.
 
-    It changes no spike, group or activation.
+    A horizon changes no spike, group or activation.
 
     Args:
         state: The state of the engine.
@@ -133,9 +133,12 @@ class Horizon:
         self._by_rule.clear()
 
     def open_bits(self, clause: Clause, group: Group) -> int:
-        """Return, as bits, the needs of a clause that a group may meet for activations without a spike of the group."""
+        """Return, as bits, the needs of a clause for which rules of a group may yet raise a spike.
+
+        The result is 0 if every activation of the clause takes all its spikes from one group.
+        """
         if clause.apart:
-            return 0  # an activation of this clause takes all its spikes from one group
+            return 0
         reach = self._rules(group).keys()
         ancestors = self.state.causes.ancestors
         bits = 0

@@ -6,11 +6,11 @@ rival of each. So only the best one, the *leader*, asks in full (``consent.py``)
 leader, and examine no other rival.
 
 An activation cannot follow if the utility of a rival lies between the leader's and its own. The leader did not examine
-this rival, but the activation would put it under pressure, or expect help from it (law L16). So the activation asks in
-full, and becomes the leader of the activations behind it.
+this rival. The activation must: the rival may need pressure, or its effects may make a further rival ready (law L16).
+So the activation asks in full, and becomes the leader of the activations behind it.
 
-An activation that asks in full may also expect help from the leader's effects. A follower does not. So an activation
-can lead only if its effects help no rule that writes a slot.
+The leader's effects may also make a rival ready. An activation that asks in full considers this; a follower does not.
+So an activation can lead only if none of its effects leads to a rule that writes a slot, or to a slot predicate.
 """
 
 from __future__ import annotations

@@ -1,4 +1,4 @@
-"""A line: a queue of ordered places. Most places join in one batch or return to the front, so it rarely searches."""
+"""A line: a queue of ordered places. Most places join in one batch or return to the front, so searches are rare."""
 
 from __future__ import annotations
 

@@ -112,12 +112,12 @@ class Matching:
 
     # ------------------------------------------------------------------------------------ births
 
-    def emit(self, signal: SignalPlan, payload: Any, run: Activation | None) -> None:
+    def emit(self, signal: SignalPlan, payload: Any, run: Activation | None, origin: Any = None) -> None:
         """Raise a signal, for a run or for code outside the rules (L11)."""
         if signal.keep_latest:
             self.holdings.withdraw(signal, "superseded")
         parents = self.parents(run)
-        self.birth(signal, payload, parents, self.group_of(parents), run)
+        self.birth(signal, payload, parents, self.group_of(parents), run, origin)
 
     def birth(
         self,
@@ -126,6 +126,7 @@ class Matching:
         parents: tuple[Spike, ...],
         group: Group,
         run: Activation | None,
+        origin: Any = None,
         lineage: Lineage | None = None,
     ) -> None:
         """Create a spike, and offer it to the activations that lack it (L11, L12)."""
@@ -143,6 +144,7 @@ class Matching:
             return
         rule = -1 if run is None or run.clause.rule.detached else run.clause.rule.index
         spike = Spike(state.spikes, signal, payload, state.now, group, parents, rule, state.activations)
+        spike.origin = origin if run is None else run.origin
         if state.loops.runs > MANY:
             spike.lineage = lineage if run is None else state.loops.lineage(run)
         live = state.live.get(signal.index)

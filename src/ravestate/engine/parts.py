@@ -33,7 +33,7 @@ from ravestate.policy.policy import Policy
 
 
 class Parts:
-    """The parts of one working engine. They have no state of their own: all their state is in `state`."""
+    """The parts of one working engine. They share `state`. Only `Agenda` and `Leaders` have tables of their own."""
 
     __slots__ = ("agenda", "halves", "holdings", "matching", "runs", "slots", "state")
 
@@ -86,7 +86,7 @@ class Parts:
                 failure, lineage = state.errors[0]
                 state.errors = state.errors[1:]
                 error = state.policy.signal_of["core:error"]
-                self.matching.birth(error, failure, (), self.matching.new_group(), None, lineage)
+                self.matching.birth(error, failure, (), self.matching.new_group(), None, lineage=lineage)
             elif state.busy and not state.values.get(state.activity.index):
                 self.slots.set_flag(state.activity, True)
             elif free.new or free.batch or free.line:
@@ -110,17 +110,17 @@ class Parts:
     # ------------------------------------------------------------------------------------ the commonest events
     # The runner calls these, after `Engine.parts_at`, if nothing records the events.
 
-    def write(self, slot: str, value: Any, run: int | None) -> None:
+    def write(self, slot: str, value: Any, run: int | None, origin: Any = None) -> None:
         """Handle the event `Write` now; `run` is the number of the run, or None for code outside the rules."""
         state = self.state
         writer = None if run is None else state.running.get(run) or self._run(run)
-        self.slots.write(state.slot_of.get(slot) or self._slot(slot), value, writer)
+        self.slots.write(state.slot_of.get(slot) or self._slot(slot), value, writer, origin)
 
-    def emit(self, signal: str, payload: Any, run: int | None) -> None:
+    def emit(self, signal: str, payload: Any, run: int | None, origin: Any = None) -> None:
         """Handle the event `Emit` now; `run` is the number of the run, or None for code outside the rules."""
         state = self.state
         emitter = None if run is None else state.running.get(run) or self._run(run)
-        self.matching.emit(state.signal_of.get(signal) or self._signal(signal), payload, emitter)
+        self.matching.emit(state.signal_of.get(signal) or self._signal(signal), payload, emitter, origin)
 
     def done(self, run: int) -> None:
         """Handle the event `Finish` now, for a run that is done."""
@@ -138,7 +138,7 @@ class Parts:
 
     def on_write(self, event: events.Write) -> None:
         """Write a slot."""
-        self.write(event.slot, event.value, event.run)
+        self.write(event.slot, event.value, event.run, event.origin)
 
     def on_store(self, event: events.Store) -> None:
         """Store an item in a collection."""
@@ -152,7 +152,7 @@ class Parts:
 
     def on_emit(self, event: events.Emit) -> None:
         """Raise a signal."""
-        self.emit(event.signal, event.payload, event.run)
+        self.emit(event.signal, event.payload, event.run, event.origin)
 
     def on_wipe(self, event: events.Wipe) -> None:
         """Withdraw the live spikes of a signal and all their descendants; cancel the runs that stand on them."""
@@ -209,7 +209,8 @@ class Parts:
 
     def on_ripen(self, time: float, activation: Activation) -> None:
         """Judge an activation again, because its spikes are old enough (L14)."""
-        self.holdings.on_ripen(activation)
+        activation.ripens = NEVER
+        self.holdings.update(activation)
 
     def on_look(self, time: float, looking: tuple[Need, Spike]) -> None:
         """Show a spike to a detached need for which it is old enough now (L19)."""
@@ -231,7 +232,8 @@ class Parts:
 
     def on_forget(self, time: float, spike: Spike) -> None:
         """Remove a spike that is too old for every detached need, if nothing holds it."""
-        self.holdings.entries.on_forget(spike)
+        if not (spike.is_held or spike.in_halves):
+            self.holdings.entries.forget(spike)
 
     def on_timeout(self, time: float, run: Activation) -> None:
         """Cancel a run that has taken too long."""
@@ -239,7 +241,8 @@ class Parts:
 
     def on_watch(self, time: float, watch: Watch) -> None:
         """Judge an `until` condition whose spikes are old enough now (L21)."""
-        self.runs.on_watch(watch)
+        watch.due = NEVER
+        self.runs.judge(watch)
 
     def _signal(self, name: str) -> SignalPlan:
         signal = self.state.signal_of.get(name)

@@ -67,6 +67,7 @@ class LossReason(Reason):
     RESIGNED = reason("resigned", "the rule resigned")
     ELIMINATED = reason("eliminated", "its patience ran out while others waited")
     WITHDRAWN = reason("withdrawn", "the spike was withdrawn")
+    DOUBLED = reason("doubled", "another attempt of the rule holds it")
     RETIRED = reason("retired", "the rule retired")
 
 

@@ -70,6 +70,8 @@ class Runs:
         for spike in activation.spikes:
             if spike is not None:
                 payloads[spike.signal.name] = spike.payload
+                if spike.origin is not None:
+                    activation.origin = _origin(activation)
         values: dict[str, Any] = {}
         for view in rule.views:
             values[view.name] = state.read(view.index)
@@ -77,7 +79,7 @@ class Runs:
             ids = tuple([spike.id for spike in activation.spikes if spike is not None])
             state.tracer(trace.Started(state.now, activation.id, rule.name, clause.number, ids, activation.number))
         state.acts = True
-        state.out.append(Run(activation.number, rule.rule, payloads, values))
+        state.out.append(Run(activation.number, rule.rule, payloads, values, activation.origin))
 
     def cancel(self, run: Activation, reason: CancelReason) -> None:
         """Cancel a run, and order the runtime to stop its function."""
@@ -119,11 +121,6 @@ class Runs:
             state.deadlines.add(due, WATCH, watch)
         elif state.is_open(watch.clause):
             self.cancel(watch.run, "interrupted")
-
-    def on_watch(self, watch: Watch) -> None:
-        """Judge an `until` condition whose spikes are old enough now (L21)."""
-        watch.due = NEVER
-        self.judge(watch)
 
     def _unwatch(self, watch: Watch, spike: Spike) -> None:
         """Record that a watch no longer keeps a spike."""
@@ -234,6 +231,17 @@ class Runs:
                     self.sets.unfold(other)
         self.holdings.give_up(run, "resigned")
         self.sets.substitute(run)
+
+
+def _origin(run: Activation) -> Any:
+    """Return the origin of a run's youngest spike that has one. Spikes that the run only looks at count last (L19)."""
+    known = [spike for spike in run.stands_on if spike.origin is not None]
+    looked = [spike for spike in run.spikes if spike is not None and spike.origin is not None]
+    return max(known or looked, key=_birth).origin
+
+
+def _birth(spike: Spike) -> int:
+    return spike.id
 
 
 def _roots(run: Activation) -> list[Group]:

@@ -26,16 +26,16 @@ class Slots:
         self.state = state
         self.matching = matching
 
-    def write(self, slot: SlotPlan, value: Any, run: Activation | None) -> None:
+    def write(self, slot: SlotPlan, value: Any, run: Activation | None, origin: Any = None) -> None:
         """Write a slot, for a run or outside code. An equal value changes nothing, unless the slot has `always`."""
         if slot.is_collection:
-            self._replace(slot, value, run)
+            self._replace(slot, value, run, origin)
             return
         _mark_write(slot, run)
         if slot.is_flag:
             value = bool(value)
         if slot.always or not equal(self.state.read(slot.index), value):
-            self._change(slot, value, self.matching.parents(run), run)
+            self._change(slot, value, self.matching.parents(run), run, origin)
 
     def set_flag(self, flag: SlotPlan, value: bool) -> None:
         """Change a built-in flag, and raise its signals only if a rule, the tracer or the runtime may hear them."""
@@ -46,11 +46,13 @@ class Slots:
             state.values[flag.index] = value
 
     def store(self, slot: SlotPlan, key: str, item: Any, run: Activation | None) -> None:
-        """Store an item of a collection, or remove it (`ABSENT`). An equal item changes nothing (L2)."""
+        """Store an item of a collection; `ABSENT` removes the present item. An equal item changes nothing (L2)."""
         _mark_write(slot, run)
         self._change_item(slot, key, item, run)
 
-    def _change(self, slot: SlotPlan, value: Any, parents: tuple[Spike, ...], run: Activation | None) -> None:
+    def _change(
+        self, slot: SlotPlan, value: Any, parents: tuple[Spike, ...], run: Activation | None, origin: Any = None
+    ) -> None:
         """Set the value of a value or flag slot, and raise its signals (L2, L13)."""
         state, matching = self.state, self.matching
         state.values[slot.index] = value
@@ -65,13 +67,13 @@ class Slots:
             if slot.is_flag:
                 raised = (slot.signals[0], slot.signals[1] if value else slot.signals[2])
             for signal in raised:
-                matching.birth(signal, value, parents, group, run)
+                matching.birth(signal, value, parents, group, run, origin)
         elif len(parents) > 1:
             matching.group_of(parents)  # the parents' groups merge (L11), although no rule hears the slot
         if slot.guarded:
             self._regate(slot)
 
-    def _change_item(self, slot: SlotPlan, key: str, item: Any, run: Activation | None) -> None:
+    def _change_item(self, slot: SlotPlan, key: str, item: Any, run: Activation | None, origin: Any = None) -> None:
         state, matching = self.state, self.matching
         items = state.unseen.get(slot.index)
         old: Mapping[str, Any] = state.read(slot.index) if items is None else items
@@ -103,11 +105,11 @@ class Slots:
         for signal in raised:
             if signal.keep_latest:
                 matching.holdings.withdraw(signal, "superseded")
-            matching.birth(signal, entry, parents, group, run)
+            matching.birth(signal, entry, parents, group, run, origin)
         if slot.guarded:
             self._regate(slot)
 
-    def _replace(self, slot: SlotPlan, value: Any, run: Activation | None) -> None:
+    def _replace(self, slot: SlotPlan, value: Any, run: Activation | None, origin: Any) -> None:
         """Replace all items of a collection; each item that differs counts as a write of its own."""
         if not isinstance(value, Mapping):
             raise RuleError(f"{slot.name} is a collection: write a mapping of keys to items, not {value!r}")
@@ -115,7 +117,7 @@ class Slots:
         items = cast("Mapping[str, Any]", value)
         old: Mapping[str, Any] = self.state.read(slot.index)
         for key in [*[k for k in old if k not in items], *items]:
-            self._change_item(slot, key, items.get(key, ABSENT), run)
+            self._change_item(slot, key, items.get(key, ABSENT), run, origin)
 
     def _is_watched(self, slot: SlotPlan) -> bool:
         """Return whether the runtime wants a report of the spikes of one of the slot's signals."""

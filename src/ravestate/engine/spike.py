@@ -20,6 +20,8 @@ class Spike:
     Attributes:
         rule: The number of the rule that raised the spike; -1 if code outside the rules or a detached rule raised it.
         before: The number of the youngest activation that is older than the spike.
+        origin: The object that came from outside with the event that led to the spike, also through detached rules;
+            None if there was no object.
         lineage: The rules that led to the spike. Kept only in an instant with many runs (L23).
         holder: One of the activations that hold the spike, or None. Most spikes never have a second holder, and need no
             table.
@@ -41,6 +43,7 @@ class Spike:
         "holder",
         "id",
         "lineage",
+        "origin",
         "parents",
         "parted",
         "payload",
@@ -68,6 +71,7 @@ class Spike:
         self.parents = parents
         self.rule = rule
         self.before = before
+        self.origin: Any = None
         self.lineage: Lineage | None = None
         self.holder: Activation | None = None
         self._others: dict[Activation, None] = NOTHING

@@ -1,4 +1,4 @@
-"""Stalemates (law L16): activations that wait for nothing but each other."""
+"""Stalemates (law L16): activations that wait only for each other."""
 
 from __future__ import annotations
 
@@ -10,7 +10,7 @@ from ravestate.engine.stuck import Stuck
 
 
 def stalemate(consent: Consent, refused: Iterable[Activation], known: Stuck | None = None) -> set[Activation]:
-    """Return activations that wait for nothing but each other.
+    """Return activations that wait only for each other.
 
     Suppose that two rules are ready, and each waits for a rival. Each rival lacks a signal that only the other ready
     rule may cause, so both rules would wait forever. The engine starts the rule with the greater effective utility. If
@@ -81,6 +81,6 @@ def _sure(activation: Activation) -> list[tuple[Activation, ...]]:
 
 
 def _hangs(activation: Activation) -> bool:
-    """Return whether an activation's wait might never end: no taken slot and no rival's patience ends it."""
+    """Return whether only the progress of other activations can end an activation's wait: it might never end."""
     refusal = activation.refusal
     return refusal is not None and bool(refusal.sure) and not refusal.bounded

@@ -10,14 +10,14 @@ The parts of the engine share one state. Only `State.adopt` and these files chan
 
 - `active`: ``holdings.py``
 - `lacking`: ``holdings.py``, ``matching.py`` and ``halves.py``; `gated`: ``holdings.py`` and ``slots.py``
-- `live`: ``matching.py`` and ``entries.py``; `busy`: ``holdings.py`` and ``entries.py``
+- `live`: ``matching.py`` and ``entries.py``; `dropped`: ``matching.py``; `busy`: ``holdings.py`` and ``entries.py``
 - `halves`, `pools`, `seats`, `benches`: ``entries.py`` and ``benches.py``
 - `rows`: ``halves.py`` and ``entries.py``
 - `headless`: ``holdings.py`` and ``benches.py``
 - `patience_ends`: ``consent.py`` and ``entries.py``; `alternatives`: ``conflict_sets.py`` and ``holdings.py``
 - `waiting`, `hoping`, `hope_counts`: ``waits.py``; `refused`, `stuck`: ``waits.py`` and ``agenda.py``
 - `running`, `ran`, `watches`: ``runs.py``; `watched_by`: ``runs.py`` and ``holdings.py``; `retired`: ``parts.py``
-- `values`: ``slots.py``; also, the first read of a slot adds its default
+- `values`, `unseen`: ``slots.py``; a read of a slot changes them, too (`Memory.read`)
 
 Any part may add to the tables of the work that is left: `asking`, `dirty`, `stirred`, `free`, `errors`, `out`.
 `Waits.wake` empties the first three, ``agenda.py`` empties `free`, and ``parts.py`` empties `errors` and `out`.
@@ -148,9 +148,9 @@ class State(Memory):
         self.refused: dict[Activation, None] = {}
         """The activations refused since the last search for a stalemate."""
         self.stuck: Stuck | None = None
-        """The activations that wait for nothing but each other (``stalemate.py``); made on first use."""
+        """The activations that wait only for each other (``stalemate.py``); made on first use."""
         self.dirty: dict[Group, None] = {}
-        """The groups that have changed: a run or a patience has ended, or a member has come, changed or gone. The
+        """The groups that have changed: a run or a patience has ended, or a member has joined, changed or left. The
         activations whose refusals depend on these groups ask again (`Waits.wake`)."""
         self.hoping: dict[tuple[int, int], dict[Activation, None]] = NOTHING
         """Hope → the waiting activations that have it. A hope is something outside an activation's groups that may lift
@@ -290,7 +290,7 @@ class State(Memory):
         return held[spike] + half.places[need.clause.rule.index] + 1
 
     def stand_in(self, need: Need, spike: Spike) -> Activation:
-        """Return a copy of the activation that the need's half would make of a spike. No table has this copy."""
+        """Return an activation like the one that the need's half would make of a spike. No table has it."""
         activation = Activation(self.entry_number(need, spike), need.clause)
         activation.put(need, spike)
         activation.missing &= ~need.bit

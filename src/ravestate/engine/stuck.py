@@ -1,4 +1,4 @@
-"""Activations that count as doing nothing, because they wait for nothing but each other (``stalemate.py``)."""
+"""Activations that count as doing nothing, because they wait only for each other (``stalemate.py``)."""
 
 from __future__ import annotations
 

@@ -2,6 +2,8 @@
 
 The engine makes a record only while it has a tracer. The records identify a run by the number of its activation. Events,
 effects and ``ctx.run`` have the run's own number, which is the same without a tracer. `Started` has both.
+
+Times are in seconds. The number ``clause`` is the clause's place within its rule.
 """
 
 from __future__ import annotations
@@ -100,7 +102,10 @@ class Passed:
 
 @dataclass(frozen=True, slots=True)
 class Waits:
-    """A ready activation waits for the rules ``for_``: rivals, or runs that hold a slot (L15)."""
+    """A ready activation waits for the rules ``for_``: rivals, or runs that hold a slot (L15).
+
+    The wait ends at ``until`` at the latest, because the patience of the rivals ends then; None without such a limit.
+    """
 
     time: float
     activation: int

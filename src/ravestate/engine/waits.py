@@ -7,8 +7,8 @@ Each waiting activation keeps the reasons for its wait, a `Refusal`. It asks aga
   (``activation.py``)
 
 It also asks again at its recheck time, and when its rule or a rival begins a cooldown. All waiting activations ask
-again when the rules change, or when a slot with predicates changes. `Waits.stir_rule` finds
-the hopes that a change of an activation concerns.
+again when the rules change, or when a slot with predicates changes. `Waits.stir_rule` finds the hopes that a change of
+an activation concerns.
 """
 
 from __future__ import annotations
@@ -97,7 +97,7 @@ class Waits:
             self.stir_rule(activation.clause.rule)
 
     def stir_rule(self, rule: RulePlan) -> None:
-        """Record that an activation of a rule came, changed or went. Activations that hope for the rule ask again."""
+        """Record that an activation of a rule began, changed or ended. Activations that hope for the rule ask again."""
         state = self.state
         others = len(state.active.get(rule.index, ())) - 1
         for hope in state.hoping:
@@ -142,7 +142,7 @@ class Waits:
 
 
 def patience_of_rivals(state: State, activation: Activation) -> float | None:
-    """Return when the last rival of a waiting activation loses its patience (seconds); None without pressure."""
+    """Return when the patience of the last rival of a waiting activation ends (seconds); None without pressure."""
     names = activation.refusal.names if activation.refusal is not None else ()
     clauses = state.policy.clause_plans
     times: list[float] = []

@@ -101,12 +101,13 @@ class Matcher:
                 against the others. Pass 0 for classes of about three examples, which are too few to learn from.
             encoder: The encoder; by default the shared one.
         """
-        pairs = [(plain(text), name) for name, texts in examples.items() for text in texts]
-        pairs += [(plain(text), NONE) for text in none]
+        pairs = [(whole(text), name) for name, texts in examples.items() for text in texts]
+        pairs += [(whole(text), NONE) for text in none]
         self.least = least
         self._shapes, self._centre = shapes, centre
-        self._pairs = tuple(dict(pairs).items())
-        self.exact = dict(self._pairs)
+        self.exact = dict(pairs)
+        # The encoder knows only words: all emoji look alike to it.
+        self._pairs = tuple(pair for pair in self.exact.items() if plain(pair[0]))
         self._encoder = encoder or shared_encoder()
         self._lock = threading.Lock()
         self._learnt: _Learnt | None = None
@@ -159,14 +160,15 @@ class Matcher:
     def match_all(self, sentences: Sequence[str]) -> list[Match | None]:
         """Return the class of each sentence; None for a sentence of no class. The encoder runs once for all.
 
-        A sentence that equals an example word for word needs no encoder.
+        A sentence that equals an example word for word needs no encoder. A sentence without words belongs to a class only
+        if it equals an example.
         """
         if self._learnt is None:
             found = list(map(self.match_exactly, sentences))
         else:
             with self._matching:  # several skills ask for the same sentences at the same time
                 known = {sentence: self._latest.get(sentence) or self.match_exactly(sentence) for sentence in sentences}
-                new = [sentence for sentence, match in known.items() if match is None]
+                new = [sentence for sentence, match in known.items() if match is None and plain(sentence)]
                 known.update(zip(new, (ranked[0] for ranked in self.ranked_all(new, most=1)), strict=True))
                 keep_latest(self._latest, known, REMEMBERED)
             found = [known[sentence] for sentence in sentences]
@@ -174,7 +176,7 @@ class Matcher:
 
     def match_exactly(self, sentence: str) -> Match | None:
         """Return the class of the example that a sentence equals word for word; None if it equals no example."""
-        text = plain(sentence)
+        text = whole(sentence)
         name = self.exact.get(text)
         return None if name is None else Match(1.0, text, 1.0, name=name, text=sentence)
 
@@ -192,6 +194,16 @@ class Matcher:
         if self._learnt is not None:
             return self._learnt.ranked(sentences, most)
         return [[match] if match else [] for match in map(self.match_exactly, sentences)]
+
+
+def whole(sentence: str) -> str:
+    """Return the form in which a sentence equals an example: its plain form, or itself if it has no words.
+
+    Example:
+        >>> whole("How are you?"), whole(" ?! ")
+        ('how are you', '?!')
+    """
+    return plain(sentence) or sentence.strip()
 
 
 @cache

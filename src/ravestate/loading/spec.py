@@ -15,7 +15,7 @@ from ravestate.declare.module import Module
 from ravestate.errors import DeclarationError, DeclarationErrors, UsageError, nearest
 from ravestate.loading.modules import load_module
 from ravestate.modules import BUILT_IN
-from ravestate.settings import load_settings, value_of, variable_of
+from ravestate.settings import field_of, from_folder, load_settings, value_of, variable_of
 from ravestate.yaml_text import load_yaml
 
 KEYS = ("modules", "settings", "seed", "patience")
@@ -49,6 +49,8 @@ class AgentSpec:
     seed: int | None = None
     patience: float = 1.0
     faults: list[str] = field(default_factory=list[str])
+    _read: list[tuple[str, str, Any, Path]] = field(default_factory=list[tuple[str, str, Any, Path]])
+    """The settings from files, in order: module, key, value, and the folder of the file. `load` takes them."""
 
     @classmethod
     def from_file(cls, path: Path) -> AgentSpec:
@@ -65,8 +67,8 @@ class AgentSpec:
     def read(self, path: Path) -> list[tuple[str, Path]]:
         """Read the settings and numbers of an agent file, and add its mistakes to `faults`.
 
-        Return the names of the file's modules, each with the folder of the file. If the file cannot be read at all,
-        raise a `UsageError`.
+        Return the names of the file's modules, each with the folder of the file, for `load`. If the file cannot be read
+        at all, raise a `UsageError`.
         """
         try:
             content: Any = load_yaml(path.read_text(encoding="utf-8"), str(path))
@@ -84,7 +86,7 @@ class AgentSpec:
         if not isinstance(modules, list) or not all(isinstance(m, str) for m in cast("list[Any]", modules)):
             wrong.append(f"modules must be a list of names, not {short(said['modules'])}")
             modules = []
-        self._take_settings(_filled(said.get("settings") or {}, wrong), wrong)
+        self._read_settings(_filled(said.get("settings") or {}, wrong), path.parent, wrong)
         for key, fits, kind in NUMBERS:
             if key in said:
                 if fits(said[key]):
@@ -95,7 +97,10 @@ class AgentSpec:
         return [(name, path.parent) for name in cast("list[str]", modules)]
 
     def load(self, names: Iterable[tuple[str, Path]]) -> None:
-        """Load the modules with these names. Each name comes with a folder, to which a relative path refers."""
+        """Load the modules with these names, then take the settings from files, whose meaning depends on the modules.
+
+        Each name comes with a folder. A relative path of a module refers to it.
+        """
         for name, folder in names:
             try:
                 module = load_module(name, folder)
@@ -106,6 +111,14 @@ class AgentSpec:
                 continue
             if module not in self.modules:
                 self.modules.append(module)
+        models = {module.name: module.settings for module in with_required(self.modules)}
+        for name, key, value, folder in self._read:
+            if (model := models.get(name)) is not None:
+                key = field_of(model, key)
+                value = from_folder(value, model, key, folder)
+            if variable_of(name, key) not in os.environ:  # the environment overrides a file
+                self.settings[name][key] = value
+        self._read.clear()
 
     def set(self, text: str) -> None:
         """Take a setting from the text ``module.key=value``, and add mistakes to `faults`. `check` checks the value."""
@@ -120,7 +133,7 @@ class AgentSpec:
             self.faults.append(f"--set {text}: module {module!r} is not part of this agent{hint}")
         elif (settings := known[module].settings) is None:
             self.faults.append(f"--set {text}: module {module!r} has no settings")
-        elif key not in settings.model_fields:
+        elif (key := field_of(settings, key)) not in settings.model_fields:
             self.faults.append(
                 f"--set {text}: module {module!r} has no such setting{nearest(key, settings.model_fields)} "
                 f"(it has: {', '.join(settings.model_fields)})"
@@ -142,7 +155,7 @@ class AgentSpec:
             self.faults += map(str, faults.exceptions)
         raise UsageError("\n".join(self.faults))
 
-    def _take_settings(self, settings: Any, wrong: list[str]) -> None:
+    def _read_settings(self, settings: Any, folder: Path, wrong: list[str]) -> None:
         if not isinstance(settings, Mapping):
             wrong.append(f"settings must map a module to its settings, not {short(settings)}")
             return
@@ -150,11 +163,10 @@ class AgentSpec:
             if not isinstance(values, Mapping):
                 wrong.append(f"settings of {module} must be keys and values, not {short(values)}")
                 continue
-            self.settings.setdefault(str(module), {}).update(
-                (key, value)
-                for key, value in cast("Mapping[str, Any]", values).items()
-                if variable_of(str(module), str(key)) not in os.environ  # the environment overrides a file
-            )
+            self.settings.setdefault(str(module), {})
+            self._read += [
+                (str(module), str(key), value, folder) for key, value in cast("Mapping[Any, Any]", values).items()
+            ]
 
 
 def _filled(value: Any, wrong: list[str]) -> Any:

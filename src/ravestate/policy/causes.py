@@ -1,8 +1,8 @@
 """The static graph of causes between signals (law L7), and its closures.
 
 An edge leads from a signal, through a rule that hears it, to a signal that the rule raises. No edge leads through a
-detached rule, because its effects have no causes. The closure of a signal holds the signal itself and all signals from
-which a path of edges leads to it.
+detached rule, because its effects have no causes. Nor does an edge lead through a detached constraint. The closure of a
+signal holds the signal itself and all signals from which a path of edges leads to it.
 
 A closure is an integer with bit *n* for signal *n*. A closure over a thousand signals takes about a hundred bytes, and
 intersecting two closures is fast.
@@ -18,13 +18,13 @@ from ravestate.policy.model import Clause, Need, RulePlan, SignalPlan
 
 
 class Causes:
-    """The causes and closures of one policy; each closure is computed at its first use.
+    """The causes and closures of one policy. The closures are computed at their first use.
 
     Attributes:
         causes: Signal → the non-detached rules that may raise it.
         all_causes: Signal → all rules that may raise it.
         direct: Signal → the signals from which an edge leads to it.
-        components: Groups of signals that lead to each other. A signal on no cycle is a component by itself.
+        components: Sets of signals that lead to each other. A signal on no cycle is a component by itself.
     """
 
     def __init__(self, signals: Sequence[SignalPlan], rules: Sequence[RulePlan]) -> None:
@@ -196,7 +196,7 @@ class Causes:
         return frozenset(found)
 
     def downstream(self, rule: RulePlan) -> tuple[Clause, ...]:
-        """Return the clauses that effects of `rule` may make ready in the same group, the best first.
+        """Return the clauses for which effects of `rule` may raise a spike in the same group, the best first.
 
         Only clauses of rules that write a slot count.
         """

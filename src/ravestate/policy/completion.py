@@ -30,8 +30,8 @@ class Completion:
         alternatives: Place → the signal's alternatives, each a tuple of places.
         bare: Place → whether a pathway may hold the signal without its causes, by the empty alternative.
         information: Place → the self-information of the signal (L9), in units (`UNIT`).
-        components: Groups of places on common cycles; causes come first. For these cycles, `bare` signals count as
-            signals without causes.
+        components: Sets of places that lie on common cycles; causes come first. For these cycles, `bare` signals count
+            as signals without causes.
         cycle: Place → the set of signals on a cycle with the signal; 0 if the signal is on no cycle.
     """
 

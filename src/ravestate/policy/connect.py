@@ -45,7 +45,7 @@ def find_kin(rules: Iterable[RulePlan], causes: Causes) -> None:
     """
     for rule in rules:
         for clause in rule.clauses:
-            families: list[tuple[int, int]] = []  # the roots and the needs of each group of kin, as bits
+            families: list[tuple[int, int]] = []  # for each family of kin: its roots and its needs, as bits
             for need in clause.needs:
                 if need.detached:
                     continue
@@ -93,7 +93,7 @@ def find_conflict_sets(signals: Sequence[SignalPlan], causes: Causes) -> None:
 
     A signal is *helpful* if it leads to a rule that writes a slot, or to a slot predicate (`Causes.helpful`). A clause
     belongs to no conflict set if its rule may raise a helpful signal. Other activations may have to wait for that
-    signal (L16), and they can only wait for an activation. So such a clause always gets an activation.
+    signal (L16), and only an activation can show that the signal may come. So such a clause always gets an activation.
     """
     helpful = causes.helpful
     for signal in signals:
@@ -144,7 +144,8 @@ def _best_writers(causes: Causes) -> dict[tuple[int, int], Clause]:
 
 
 def _is_sole(clause: Clause, best: dict[tuple[int, int], Clause], causes: Causes) -> bool:
-    """Return whether no rule raises the signals of a plain clause, and no better clause competes with it."""
+    """Return whether only detached rules may raise the signals of a plain clause, and no better clause competes with
+    it."""
     slots = clause.rule.slots
     return (
         bool(slots)

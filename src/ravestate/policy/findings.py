@@ -15,7 +15,9 @@ from ravestate.policy.model import Clause, RulePlan
 from ravestate.policy.plans import Plans
 from ravestate.policy.source import Source, acts_of, undeclared
 
-BREAKING = frozenset({"undeclared", "unknown", "await"})  # findings of these kinds make a rule fail at run time
+BREAKING = frozenset(
+    {"undeclared", "unknown", "await", "assignment"}
+)  # findings of these kinds make a rule fail at run time
 
 MAX_PEERS = 64
 """The search for ties compares each rule with at most this many other rules, those declared first.
@@ -29,8 +31,8 @@ class Finding:
     """A remark on a probable mistake in a policy.
 
     Attributes:
-        kind: ``"undeclared"``, ``"unknown"``, ``"await"``, ``"unreachable"``, ``"unraised"``, ``"loop"``,
-            ``"never-wins"``, ``"tie"``, ``"cooldown"`` or ``"unheard"``.
+        kind: ``"undeclared"``, ``"unknown"``, ``"await"``, ``"assignment"``, ``"unreachable"``, ``"unraised"``,
+            ``"loop"``, ``"never-wins"``, ``"tie"``, ``"cooldown"`` or ``"unheard"``.
         subject: The qualified name of the rule or signal.
         message: The remark. It says what to change.
         rules: The names of the rules that wait for the signal, if the kind is ``"unraised"``; else empty.
@@ -73,6 +75,9 @@ def _in_source(policy: Plans, source: Source) -> Iterator[Finding]:
         for method, line in islice(acts.forgotten.items(), 1):
             mend = f"write await ctx.{method}(...)" + ("" if rule.rule.is_async else " in an async def")
             yield Finding("await", rule.name, f"{where} calls ctx.{method} in line {line} without effect: {mend}")
+        for slot, line in islice(acts.replaced.items(), 1):
+            why = f"replaces the slot {slot} in line {line}, for all agents: write ctx[{slot}] = ..."
+            yield Finding("assignment", rule.name, f"{where} {why}")
 
 
 def _unraised(policy: Plans) -> Iterator[Finding]:

@@ -3,7 +3,7 @@
 In a loop, each rule has a clause whose signals come from rules of the loop, and at least one rule or constraint is
 detached. Without detachment, the causal group ends the loop (L19). A clause with a ``min_age`` or a predicate is not
 part of a loop here, because it may end the loop. A rule that takes time is not part of a loop either. A rule takes time
-if it awaits something, or if it is a plain function that calls code outside its context.
+if it awaits something. A plain function takes time if it uses a value that may block: one of any type but `QUICK`.
 """
 
 from __future__ import annotations
@@ -89,7 +89,10 @@ def _wanted(clause: Clause) -> list[Need]:
 
 
 def _raised(policy: Plans, rule: RulePlan) -> list[int]:
-    """Return the numbers of the signals with which a rule may immediately start the loop's next run."""
+    """Return the numbers of the signals with which a rule may immediately start the loop's next run.
+
+    The signals of flags are left out: a flag that has its value already raises none.
+    """
     changes = [policy.slot_plans[s].signals[0].index for s in rule.slots if not policy.slot_plans[s].is_flag]
     return [*rule.emits, *changes]
 

@@ -3,6 +3,8 @@
 The compiler gives each signal, slot, rule and clause a number, in declaration order, and fills in the records. Nothing
 changes the records afterwards, so any number of engines share them. A signal's record lists its listeners: the needs
 (constraints of clauses) that hear it. So the cost of a spike depends only on the rules that hear its signal.
+
+The *best* of several clauses has the greatest `Clause.base`. Among equals, the clause declared first is the best.
 """
 
 from __future__ import annotations
@@ -24,7 +26,7 @@ class ClauseView:
         signals: The signals of the clause's constraints, as declared.
         pathways: The clause's completed pathways (law L8); those with the least information come first. At most 256 are
             listed, because there may be exponentially many.
-        utility: The least self-information among the clause's pathways, in nats (L9).
+        utility: The least self-information among the clause's pathways, plus ln 2 for each predicate, in nats (L9).
     """
 
     signals: tuple[Signal[Any], ...]
@@ -50,13 +52,14 @@ class SignalPlan:
     others: tuple[Need, ...] = ()
     """The listeners in no conflict set and in no half."""
     conflict_sets: tuple[tuple[Clause, ...], ...] = ()
-    """Groups of clauses that compete for each spike of the signal; the best clause of a group comes first."""
+    """Sets of clauses that compete for each spike of the signal; the best clause of a set comes first."""
     halves: tuple[Half, ...] = ()
-    """Groups of listeners whose first spikes wait without an activation."""
+    """Sets of listeners for which the engine keeps a first spike without an activation (``engine/halves.py``)."""
     watchers: tuple[Need, ...] = ()
     """The needs for this signal in `until` conditions (L21)."""
     retain: float = -1.0
-    """For this many seconds, detached needs can see a spike that no activation holds; negative without such needs."""
+    """How many seconds after its birth detached needs can still see a spike that nothing holds. If the signal has no
+    such needs, the number is negative."""
 
     def __post_init__(self) -> None:
         self.name = self.signal.name
@@ -151,11 +154,13 @@ class Clause:
     apart: bool = False
     """Whether an activation holds spikes of one group only: all non-detached needs of the clause are kin (L12)."""
     reflexive: bool = False
-    """Whether the clause hears a built-in flag. If so, its activations change no built-in flag (L22)."""
+    """Whether the clause hears a built-in flag, or has a predicate on one. If so, its activations change no built-in
+    flag (L22)."""
     unrivalled: bool = False
     """Whether the clause always goes before all other clauses that write one of its slots."""
     cyclic: bool = False
-    """Whether the clause's rule may raise, without detachment, a signal that leads to one of the clause's needs."""
+    """Whether a signal that the clause's rule raises leads to a non-detached need of the clause. False for a detached
+    rule."""
 
     def __repr__(self) -> str:
         return self.rule.name if len(self.rule.clauses) <= 1 else f"{self.rule.name}[{self.number}]"
@@ -163,7 +168,7 @@ class Clause:
 
 @dataclass(slots=True, eq=False, repr=False)
 class RulePlan:
-    """A rule, its numbers, and the indices of the slots and signals that it names."""
+    """A rule, its numbers, and the numbers of the slots and signals that it names. Times are in seconds."""
 
     index: int
     rule: Rule[Any, Any]
@@ -202,7 +207,7 @@ class RulePlan:
 
 @dataclass(slots=True, eq=False, repr=False)
 class Half:
-    """A set of needs for one signal that the engine treats alike. Each belongs to a clause with two needs.
+    """Needs for one signal, all of which the engine treats alike. Each need belongs to a clause with two needs.
 
     The half holds the first spike of such a clause without an activation (``engine/halves.py``).
 
@@ -217,8 +222,8 @@ class Half:
         slotset: The numbers of the slots that each of the rules writes.
         busy: Whether a held spike counts for ``core:activity``.
         places: Number of a rule → the place of its need in `needs`.
-        sole: Whether the half has one rule, no rule raises its signals, and no better rule writes its slots for the
-            same cause.
+        sole: Whether only detached rules may raise the signals of the half's clause, and no better clause writes its
+            slots for the same cause. Such a half has a single need.
     """
 
     needs: tuple[Need, ...]

@@ -63,7 +63,7 @@ class Names:
             self.faults.append(f"two {what}s are named {name!r}: {first} and {second}; rename one")
 
     def signal(self, signal: Signal[Any], where: str) -> SignalPlan | None:
-        """Return the record of a signal that a declaration (`where`) uses. Without one, add a fault and return None."""
+        """Return the record of a signal that a declaration (`where`) uses. If none exists, add a fault; return None."""
         plan = self._signal_of.get(signal.name)
         if plan is not None and plan.signal is signal:
             return plan
@@ -71,7 +71,7 @@ class Names:
         return None
 
     def slot(self, slot: Slot[Any], where: str) -> SlotPlan | None:
-        """Return the record of a slot. Otherwise, this is like `signal`."""
+        """Return the record of a slot, in the same way as `signal`."""
         plan = self._slot_of.get(slot.name)
         if plan is not None and plan.slot is slot:
             return plan

@@ -32,7 +32,7 @@ class Policy(Plans):
         Raises:
             DeclarationError: The policy has no such rule.
         """
-        name = rule if isinstance(rule, str) else rule.name
+        name = rule if isinstance(rule, str) else str(getattr(rule, "name", rule))
         found = self.plan_of.get(name)
         if found is None:
             raise DeclarationError(f"the policy has no rule {name!r}{nearest(name, self.rules)}")
@@ -119,7 +119,9 @@ class Policy(Plans):
         return draw(self.rules.values(), format)
 
     def with_settings(self, settings: Mapping[str, Any]) -> Policy:
-        """Return a policy with these modules and the given settings. If no rule uses a setting, return this policy.
+        """Return a policy with these modules and the given settings (module name → settings).
+
+        If no rule uses a setting, or if the settings are the same, return this policy.
 
         Raises:
             DeclarationErrors: The settings make a declaration impossible, e.g. a number is out of range.
@@ -130,6 +132,8 @@ class Policy(Plans):
 
     def with_rule(self, rule: Rule[Any, Any], settings: Mapping[str, Any] | None = None) -> Policy:
         """Return this policy with one more rule; the rule must use this policy's signals and slots.
+
+        `settings` replaces the policy's settings, unless it is None.
 
         Raises:
             DeclarationErrors: The rule does not fit this policy.

@@ -35,7 +35,7 @@ class Rules:
         self._count = 0  # the number of clauses so far
 
     def add(self, rule: Rule[Any, Any]) -> None:
-        """Make the record of a rule, and add the rule's faults to the list."""
+        """Make the record of a rule, and add the rule's faults to `faults`."""
         other = self._named.setdefault(rule.name, rule)
         if other is not rule:
             self.names.twice("rule", rule.name, other.origin, rule.origin)

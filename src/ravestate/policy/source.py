@@ -1,4 +1,5 @@
-"""Mistakes in the source of a rule's function: undeclared acts, names that do not exist, a forgotten ``await``.
+"""Mistakes in the source of a rule's function: undeclared acts, names that do not exist, a forgotten ``await``, a slot that
+the function replaces.
 
 An act is a read, a write, an emit or the use of a payload. This file checks an act only if the function's globals or
 closure hold the slot or signal. All other acts are checked when the rule runs (law L3), e.g. an act on a name that the
@@ -44,6 +45,8 @@ class Acts:
     payloads: dict[Signal[Any], int] = field(default_factory=dict[Signal[Any], int])
     forgotten: dict[str, int] = field(default_factory=dict[str, int])
     """Method of the context that the function calls without ``await`` → the line of the call."""
+    replaced: dict[str, int] = field(default_factory=dict[str, int])
+    """Attribute that holds a slot, and that the function assigns → the line of the assignment."""
     unknown: dict[str, int] = field(default_factory=dict[str, int])
     """Phrase about a missing name, with the nearest existing name → the line of the missing name."""
 
@@ -147,6 +150,9 @@ class _Reader:
                 value=ast.Call(func=ast.Attribute(value=ast.Name(id=self._context), attr="sleep" | "quiet" as method))
             ):
                 acts.forgotten.setdefault(method, self._first + node.lineno)
+            case ast.Attribute(value=owner, attr=name, ctx=ast.Store()):
+                if isinstance(inspect.getattr_static(self._resolved(owner), name, None), Slot):
+                    acts.replaced.setdefault(ast.unparse(node), self._first + node.lineno)
             case _:
                 pass
 

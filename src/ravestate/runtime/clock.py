@@ -55,7 +55,7 @@ class Clock:
                 _wake(sleeper)
 
     async def sleep(self, seconds: float) -> None:
-        """Wait until `seconds` (not NaN) have passed on this clock; with 0 or less, only give other tasks a turn."""
+        """Wait until `seconds` have passed on this clock; see `RuleContext.sleep`."""
         if seconds != seconds:
             raise ValueError("cannot sleep for nan seconds")
         if seconds <= 0:

@@ -40,8 +40,8 @@ class Context:
         modules: Modules to compile, or one compiled `Policy` to share.
         settings: Name of a module → the module's settings. They override settings from the environment.
         seed: The seed of all random choices that rules make through ``ctx.random``; a new seed in each run by default.
-        patience: A rule gives up if it is still not ready after another rule has waited for it for this many seconds
-            (law L16). A rule may set its own patience.
+        patience: The seconds for which other rules wait for a rule that lacks an input. Then that rule gives up its
+            spikes (law L16). A rule may set its own patience.
         trace: True to keep records of all events, for ``trace`` and ``explain``; or a function to call with each record.
         journal: A function, e.g. a `Journal`, to call with each event and each `Taken` mark, and its time (seconds).
 
@@ -196,7 +196,7 @@ class Context:
         If nothing is due now, set the clock forward to the next time at which something is due.
 
         Returns:
-            False if nothing is due, not even at a later time; else True.
+            False if the context is not paused, or if nothing is due, not even at a later time; else True.
         """
         return self._running().step()
 
@@ -211,8 +211,14 @@ class Context:
 
     # ------------------------------------------------------------------------------------ acting from outside
 
-    def put(self, slot: Slot[T], value: T) -> None:
+    def put(self, slot: Slot[T], value: T, *, origin: object = None) -> None:
         """Write a slot from outside. Any thread may call this. After the end of the context, the call does nothing.
+
+        Args:
+            slot: The slot.
+            value: The new value.
+            origin: Any object, for example the message that brought the value. Every rule that the write leads to gets
+                it as ``ctx.origin``. So a platform knows which message an output answers.
 
         Raises:
             UndeclaredError: The policy does not have the slot.
@@ -220,19 +226,28 @@ class Context:
         """
         self._known(slot, self.policy.slots, "slot")
         slot.check(value, "context.put")
-        self._running().write(slot.name, value, None)
+        self._running().write(slot.name, value, None, origin)
 
-    def emit(self, signal: Signal[T], payload: T | None = None) -> None:
+    def emit(self, signal: Signal[T], payload: T | None = None, *, origin: object = None) -> None:
         """Raise a signal from outside. Any thread may call this. After the end of the context, the call does nothing.
+
+        Args:
+            signal: The signal.
+            payload: Its payload.
+            origin: Any object; see `put`.
 
         Raises:
             UndeclaredError: The policy does not have the signal.
         """
         self._known(signal, self.policy.signals, "signal")
-        self._running().emit(signal.name, payload, None)
+        self._running().emit(signal.name, payload, None, origin)
 
     def wipe(self, signal: Signal[Any]) -> None:
-        """Withdraw the live spikes of a signal, and all spikes that they caused (L20). Any thread may call this."""
+        """Withdraw the live spikes of a signal, and all spikes that they caused (L20). Any thread may call this.
+
+        Raises:
+            UndeclaredError: The policy does not have the signal.
+        """
         self._known(signal, self.policy.signals, "signal")
         self._running().receive(Wipe(signal.name))
 

@@ -45,10 +45,11 @@ class RuleContext:
     """The argument of a rule's function. With it, the function reads slots, writes slots and emits signals.
 
     ``ctx[slot]`` is the slot's value when the rule started, or the rule's own last write. ``ctx[slot] = value`` writes
-    the slot. A write takes effect and raises signals immediately.
+    the slot. A write takes effect and raises signals immediately. When the run is over, a write, `emit`, `wipe`,
+    `add_rule` and `drive_clock` raise `RunEnded`.
     """
 
-    __slots__ = ("_host", "_payloads", "_values", "cancelled", "ended", "rule", "run")
+    __slots__ = ("_host", "_payloads", "_values", "cancelled", "ended", "origin", "rule", "run")
 
     def __init__(self, host: Host, effect: Run) -> None:
         self._host = host
@@ -56,6 +57,13 @@ class RuleContext:
         """The number of the run."""
         self.rule = effect.rule
         """The rule of the run."""
+        self.origin: Any = effect.origin
+        """The object that code outside the rules passed to ``put`` or ``emit`` with the event that led to this run.
+
+        It is None if that code passed no object, or if no event from outside led to the run: then the agent acts on its
+        own initiative. The object also passes through detached rules. If several events led to the run, the object of
+        the youngest spike counts; spikes of detached constraints count last.
+        """
         self._payloads = effect.payloads
         self._values: dict[str, Any] = effect.values  # type: ignore[assignment]  # made for this run alone
         self.cancelled = ""
@@ -146,7 +154,11 @@ class RuleContext:
         self._host.emit(signal.name, payload, self.run)
 
     def wipe(self, signal: Signal[Any]) -> None:
-        """Withdraw the live spikes of a signal, and all spikes that they have caused (L20)."""
+        """Withdraw the live spikes of a signal, and all spikes that they have caused (L20).
+
+        Raises:
+            UndeclaredError: The policy does not have the signal.
+        """
         self._alive()
         self._host.receive(Wipe(signal.name, self.run))
 
@@ -160,11 +172,18 @@ class RuleContext:
         self._host.add_rule(rule)
 
     async def sleep(self, seconds: float) -> None:
-        """Wait until `seconds` have passed on the context's clock."""
+        """Wait until `seconds` have passed on the context's clock. With 0 or less, only give other tasks a turn.
+
+        Raises:
+            ValueError: `seconds` is NaN.
+        """
         await self._host.clock.sleep(seconds)
 
     async def quiet(self) -> None:
-        """Wait until no foreground rule runs or waits for consent."""
+        """Wait until no foreground rule runs or waits for consent.
+
+        Call this only in a background rule: a foreground rule would wait for its own end.
+        """
         await self._host.quiet()
 
     def drive_clock(self, time: float) -> None:
@@ -177,7 +196,7 @@ class RuleContext:
         self._host.drive(time)
 
     def stop(self, failure: RavestateError | None = None) -> None:
-        """Ask the context to end: to raise ``rs.shutdown``, wait a few seconds, and cancel the rules that still run.
+        """Ask the context to end. It raises ``rs.shutdown``, waits a few seconds, and cancels the rules that still run.
 
         Args:
             failure: The error that ends the agent, if any; ``rs.run`` raises it when the agent has ended.
@@ -191,7 +210,7 @@ class RuleContext:
 
     @property
     def settings(self) -> Any:
-        """The settings of the rule's module."""
+        """The settings of the rule's module; None if the module has none."""
         return self._host.settings.get(self.rule.name.split(":", 1)[0])
 
     @property

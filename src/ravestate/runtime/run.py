@@ -35,6 +35,7 @@ def run(*modules: Module | ModuleType | Policy, **options: Any) -> None:
 
     Raises:
         DeclarationErrors: The modules or the settings have faults.
+        RavestateError: A rule has ended the agent because of this error (``ctx.stop(failure)``).
         EngineError: An event loop runs in this thread already, as in an async function or a notebook.
     """
     try:

@@ -33,7 +33,7 @@ BATCH: Final = 512  # the loop gets a turn after this many rounds of effects, so
 TURN: Final = 0.02  # the loop gets a turn after this many real seconds, even after fewer rounds than `BATCH`
 
 SETTLES: Final = 64
-"""The loop gets a turn after this many waits for a signal have ended in a row without one (`Runner.settle`)."""
+"""The loop gets a turn after this many calls of `Runner.settle` in a row."""
 
 ENDED = "the context has ended"
 
@@ -122,21 +122,21 @@ class Runner:
             self._random = random.Random(self._seed)
         return self._random
 
-    def emit(self, signal: str, payload: Any, run: int | None) -> None:
+    def emit(self, signal: str, payload: Any, run: int | None, origin: Any = None) -> None:
         """Raise a signal for a run, or for code outside the rules (None). Any thread may call this."""
         parts = self.short_way()
         if parts is not None:
-            parts.emit(signal, payload, run)
+            parts.emit(signal, payload, run, origin)
         else:
-            self.receive(Emit(signal, payload, run))
+            self.receive(Emit(signal, payload, run, origin))
 
-    def write(self, slot: str, value: Any, run: int | None) -> None:
+    def write(self, slot: str, value: Any, run: int | None, origin: Any = None) -> None:
         """Write a slot for a run, or for code outside the rules (None). Any thread may call this."""
         parts = self.short_way()
         if parts is not None:
-            parts.write(slot, value, run)
+            parts.write(slot, value, run, origin)
         else:
-            self.receive(Write(slot, value, run))
+            self.receive(Write(slot, value, run, origin))
 
     def short_way(self) -> Parts | None:
         """Return the engine's parts if an event may go directly to them; None if it must go through `receive`."""
@@ -320,10 +320,10 @@ class Runner:
         self.clock.halt()
 
     def step(self) -> bool:
-        """Perform the next wave of effects; the clock must be halted. If no effect is due, first set the clock forward.
+        """Perform the next wave of effects while the clock is halted. If no effect is due, first set the clock forward.
 
         Returns:
-            False if nothing is due, not even at a later time; else True.
+            False if the clock is not halted, or if nothing is due, not even at a later time; else True.
         """
         if not self.clock.halted or self.closed:
             return False

@@ -39,7 +39,7 @@ class Spares:
                 self._spare = None
 
     def variables(self) -> contextvars.Context:
-        """Return a copy of the present context variables. Callers with the same variables get the same copy."""
+        """Return a copy of the present context variables: the last call's copy, if they have not changed."""
         variables = contextvars.copy_context()
         if not are_equal(variables, self._variables):
             self._variables = variables

@@ -19,8 +19,10 @@ class Timer:
         self._due = 0.0
 
     def set(self, due: float | None) -> None:
-        """Fire at `due` (seconds), unless another clock drives the context's clock. An earlier timer stays: it does no
-        harm."""
+        """Fire at `due` (seconds; None: no timer), unless another clock drives the context's clock.
+
+        A timer for an earlier time stays. If no deadline is left at that time, the engine does nothing.
+        """
         if due is None or self._clock.driven or (self._handle is not None and self._due <= due):
             return
         self.clear()

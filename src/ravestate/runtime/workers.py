@@ -50,9 +50,9 @@ class ThreadPool:
     def reset(self) -> None:
         """Set the pool to its initial state, without threads and jobs."""
         lock = threading.Lock()
-        self.change = threading.Condition(lock)
-        self.rest = threading.Condition(lock)
-        self.contexts = 0
+        self.change = threading.Condition(lock)  # wakes idle threads for a job, or for the end of the last context
+        self.rest = threading.Condition(lock)  # wakes the ending process when no job runs
+        self.contexts = 0  # the number of contexts with an open queue
         self.at_work: set[Job] = set()
         self._jobs: deque[Job] = deque()
         self._free = 0

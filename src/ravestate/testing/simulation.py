@@ -5,6 +5,7 @@ from __future__ import annotations
 import asyncio
 from collections import deque
 from collections.abc import Callable, Mapping
+from math import isfinite
 from pathlib import Path
 from types import ModuleType
 from typing import Any, TypeVar
@@ -94,7 +95,7 @@ class Simulation:
         instead.
 
         Args:
-            path: The agent file. Paths of modules in it are relative to its folder.
+            path: The agent file. Relative paths in it are relative to its folder.
             settings: Name of a module → key → value. They override the environment and the file.
             seed: The seed of random choices; by default that of the file, or else 0.
             patience: As for `Context` (seconds); by default that of the file.
@@ -175,9 +176,17 @@ class Simulation:
         self.settle()
 
     def advance(self, seconds: float) -> None:
-        """Let `seconds` of virtual time pass. Do everything that is due now, meanwhile, and at the end."""
+        """Let `seconds` of virtual time pass. Do everything that is due now, meanwhile, and at the end.
+
+        Raises:
+            ValueError: `seconds` is negative or not finite.
+            EngineError: Rules trigger each other without end, so that no time passes.
+            TimeoutError: A plain function takes too long in real time: 30 s, or 300 s if it computes.
+        """
         if seconds < 0:
             raise ValueError(f"advance({seconds!r}): time does not run backwards")
+        if not isfinite(seconds):
+            raise ValueError(f"advance({seconds!r}): write a finite number of seconds")
         loop = self._running()
         self.settle()
         loop.run_to(loop.time() + seconds)
@@ -194,7 +203,7 @@ class Simulation:
 
     @property
     def trace(self) -> deque[Record]:
-        """The record of every decision so far; empty with ``trace=False``."""
+        """The latest records of the trace, at most 100,000; empty with ``trace=False``."""
         return self.context.trace
 
     def read(self, slot: Slot[T]) -> T:
@@ -219,6 +228,8 @@ class Simulation:
     def _running(self) -> VirtualLoop:
         if self._loop is None:
             raise EngineError("the simulation has not started: write `with simulate(...) as sim:`")
+        if self._loop.is_closed():
+            raise EngineError("the simulation has ended: act on it inside its `with` block")
         return self._loop
 
 

@@ -111,19 +111,24 @@ def transcript(note: Callable[[Said], None]) -> Module:
     begun: list[Speech] = []
     waiting: list[Said] = []
 
-    def show_waiting() -> None:
-        """Pass the user's waiting utterances to `note`, unless the agent is still speaking."""
-        if not any(one.start and not one.over for one in begun):
+    def show() -> None:
+        """Pass the agent's utterances that are over to `note`. If the agent is silent, add the user's."""
+        for one in [one for one in begun if one.over]:
+            begun.remove(one)
+            if one.heard.strip():
+                cut = one.heard.strip() != one.text.strip()
+                note(Said("agent", one.heard.strip(), one.start, one.end, cut, not one.counts))
+        if not any(one.start for one in begun):
             for one in waiting:
                 note(one)
             waiting.clear()
 
     @witness.rule(when=voiceio.utterance.max_age(None).detached(), background=True)
     async def hear_user(ctx: RuleContext) -> None:
-        """Pass an utterance of the user to `note`, as soon as the agent is silent."""
+        """Pass an utterance of the user to `note`, after the utterance of the agent that it interrupts."""
         one = ctx.payload(voiceio.utterance)
         waiting.append(Said("user", one.text, one.start, one.end))
-        show_waiting()
+        show()
 
     @witness.rule(when=voiceio.speech.max_age(None).detached(), background=True)
     async def wait_for_agent(ctx: RuleContext) -> None:
@@ -136,22 +141,14 @@ def transcript(note: Callable[[Said], None]) -> Module:
     )
     async def hear_agent(ctx: RuleContext) -> None:
         """Pass the agent's utterances that are over to `note`."""
-        show_agent()
-        show_waiting()
-
-    def show_agent() -> None:
-        for one in [one for one in begun if one.over]:
-            begun.remove(one)
-            if one.heard.strip():
-                cut = one.heard.strip() != one.text.strip()
-                note(Said("agent", one.heard.strip(), one.start, one.end, cut, not one.counts))
+        show()
 
     @witness.rule(when=shutdown)
     async def end(ctx: RuleContext) -> None:
         """Pass the remaining utterances to `note`."""
-        show_agent()  # the end of the agent has cut off its speech
+        show()  # the end of the agent has cut off its speech
         begun.clear()
-        show_waiting()
+        show()
 
     del hear_user, wait_for_agent, hear_agent, end
     return witness

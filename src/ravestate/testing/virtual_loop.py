@@ -62,7 +62,7 @@ class VirtualLoop(asyncio.SelectorEventLoop):
         return future
 
     async def shutdown_default_executor(self, *args: Any, **named: Any) -> None:
-        """Wait for the threads of the pool, as any loop does before its runner closes it. Threads end in real time."""
+        """Wait until the threads of the pool have ended. They end in real time, so virtual time waits for them."""
         closing = self.create_future()
         self._functions[closing] = "the shutdown of the thread pool"
         try:

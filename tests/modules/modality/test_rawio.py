@@ -16,6 +16,22 @@ async def repeat(ctx: rs.RuleContext) -> None:
     ctx[rawio.output] = ctx.payload(rawio.input.changed)
 
 
+class Shown:
+    """A listener that keeps a log of what it is shown."""
+
+    def __init__(self) -> None:
+        self.log: list[str] = []
+
+    def utter(self, text: str) -> None:
+        self.log.append(text)
+
+    def grow(self, piece: str) -> None:
+        self.log.append(piece)
+
+    def fall_silent(self) -> None:
+        self.log.append("silence")
+
+
 def test_equal_inputs_raise_the_signal_each_time() -> None:
     with simulate(echo) as sim:
         sim.say("yes")
@@ -31,6 +47,33 @@ def test_another_thread_can_write_the_input() -> None:
             return await waiting
 
     assert asyncio.run(main()) == "from afar"
+
+
+def test_a_rule_that_fails_in_the_middle_of_an_utterance_ends_the_utterance() -> None:
+    story = rs.Module("story", requires=[rawio])
+
+    @story.rule(when=rawio.input.changed, writes=(rawio.output, rawio.speaking), emits=rawio.piece)
+    async def tell(ctx: rs.RuleContext) -> None:
+        ctx[rawio.speaking] = True
+        ctx.emit(rawio.piece, "Once ")
+        await ctx.sleep(2)
+        raise ValueError("the story is lost")
+
+    @story.rule(when=rawio.input.changed.detached(), detached=True)
+    async def listen(ctx: rs.RuleContext) -> None:
+        raise ValueError("another rule fails")
+
+    page = rs.Module("page", requires=[rawio])
+    rawio.carry(page, page.slot("listener", Shown()))
+
+    with simulate(story, page) as sim:
+        sim.say("a story")
+        sim.advance(1)
+        assert sim.read(rawio.speaking)
+        sim.advance(1)
+        assert not sim.read(rawio.speaking)
+        assert [rule for rule, _ in sim.failures] == ["story:listen", "story:tell"]
+        assert sim.read(page.slots[0]).log == ["Once ", "silence"]
 
 
 @pytest.mark.parametrize(

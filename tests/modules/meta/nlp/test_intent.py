@@ -48,6 +48,24 @@ def test_an_utterance_that_resembles_the_examples_of_an_intent_raises_it() -> No
         assert not sim.failures
 
 
+def test_an_example_without_words_raises_its_intent_only_if_the_utterance_equals_it() -> None:
+    module = rs.Module("signs", requires=[nlp])
+    found = {
+        name: nlp.intent(module, name, examples=examples)
+        for name, examples in {"smile": ["🙂"], "surprise": ["?!", "what a surprise"]}.items()
+    }
+
+    @module.rule(when=found["smile"] | found["surprise"], writes=rawio.output)
+    async def answer(ctx: rs.RuleContext) -> None:
+        ctx[rawio.output] = " ".join(name for name, signal in found.items() if ctx.payload(signal))
+
+    with simulate(module) as sim:
+        for text in ("🙂", " ?! ", "🙃", "??", "what a surprise"):
+            sim.say(text)
+        assert sim.said == ["smile", "surprise", "surprise"]
+        assert not sim.failures
+
+
 def test_a_match_has_its_score_its_margin_and_the_nearest_example() -> None:
     with simulate(cafe()) as sim:
         sim.say("At what time do you open?")

@@ -31,6 +31,13 @@ def test_each_demonstration_is_kept_in_a_new_file(tmp_path: Path) -> None:
         "über-fliegen-2.npz",
     ]
     assert keep(tmp_path, "!?", poses).name == "activity-1.npz"
+    long = "水" * 100  # 300 bytes
+    assert read(keep(tmp_path, long, poses))[0] == long
+
+
+def test_a_pose_needs_33_landmarks() -> None:
+    with pytest.raises(PlatformError, match=r"shape \(5, 4\): give \(33, 4\)"):
+        Pose(0.0, np.zeros((5, 4), dtype=np.float32))
 
 
 @pytest.mark.parametrize(

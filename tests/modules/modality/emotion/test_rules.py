@@ -256,6 +256,16 @@ def test_the_agent_is_not_cheerful_after_sad_words() -> None:
         assert felt(sim)[-1] == "happy"
 
 
+def test_sorrow_lasts_for_the_next_eleven_utterances() -> None:
+    with calm(happy=1.0) as sim:
+        sim.say("My father died last week.")
+        for _ in range(11):
+            sim.say("I passed my exam!")
+        assert felt(sim) == ["sad"]
+        sim.say("I passed my exam!")
+        assert felt(sim)[-1] == "happy"
+
+
 @pytest.mark.parametrize("text", ["What is that to you?", "When does the train leave?", "What is 7 percent of 1300?"])
 def test_plain_questions_do_not_surprise_the_agent(text: str) -> None:
     with simulate(emotion, seed=1) as sim:

@@ -80,3 +80,31 @@ def test_the_method_taken_waits_until_a_call_of_next_returns_the_picture_or_the_
         assert order == ["taken", "due", "closed", "due"]
 
     asyncio.run(watch())
+
+
+def test_each_waiting_call_of_next_gets_a_picture() -> None:
+    async def watch() -> None:
+        frames = Frames()
+        async with asyncio.TaskGroup() as group:
+            first, second = (group.create_task(frames.next()) for _ in range(2))
+            await asyncio.sleep(0)
+            frames.put(b"1")
+            await frames.taken()
+            frames.put(b"2")
+        assert sorted(frame.data for frame in (first.result(), second.result()) if frame is not None) == [b"1", b"2"]
+
+    asyncio.run(asyncio.wait_for(watch(), 10))
+
+
+def test_a_picture_may_come_after_the_loop_of_a_cancelled_call_has_closed() -> None:
+    frames = Frames()
+
+    async def give_up() -> None:
+        with pytest.raises(TimeoutError):
+            async with asyncio.timeout(0):
+                await frames.next()
+
+    asyncio.run(give_up())
+    frames.put(b"pixels")
+    frame = asyncio.run(frames.next())
+    assert frame is not None and frame.data == b"pixels"

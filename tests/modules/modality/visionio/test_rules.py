@@ -174,6 +174,20 @@ def test_face_vectors_from_another_module_are_used_too(memory: Path) -> None:
         assert present(sim) == ["Ada"] and "Ada" in sim.said[0]
 
 
+def test_a_face_with_a_time_in_the_future_was_seen_now(memory: Path) -> None:
+    """A robot may give the time of its own clock, for example the seconds since 1970."""
+    ada = Node("Person", {"name": "Ada"})
+    with agent(memory) as sim:
+        for _ in range(3):
+            sim.emit(visionio.facevec, visionio.FaceVec((0.1,) * 128, (10, 20, 50, 50), 1, ada, time=1e9))
+            sim.advance(0.2)
+        sim.emit(visionio.looked, visionio.Look(1e9, (640, 480)))
+        assert present(sim) == ["Ada"]
+        sim.advance(5.0)
+        sim.emit(visionio.looked, visionio.Look(sim.now, (640, 480)))
+        assert present(sim) == [] and sim.read(visionio.history) == ()
+
+
 def test_a_face_that_appears_only_for_a_moment_is_not_a_visitor(memory: Path) -> None:
     with agent(memory) as sim:
         stage = Stage()

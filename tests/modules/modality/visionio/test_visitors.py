@@ -1,5 +1,8 @@
-"""Decisions: whose face does a track show, and to which visitor does the track belong? The tests use short vectors."""
+"""Decisions: whose face does a track show, and to which visitor does the track belong?"""
 
+import pytest
+
+from ravestate.errors import PlatformError
 from ravestate.modules.meta.ontology import Node
 from ravestate.modules.modality.visionio.face import FaceVec
 from ravestate.modules.modality.visionio.visitors import (
@@ -14,13 +17,25 @@ from ravestate.modules.modality.visionio.visitors import (
     whose,
 )
 
+REST = (0.0,) * 127
+"""All vectors here are equal except for their first number."""
 ADA, BOB = Node("Person", {"name": "Ada"}), Node("Person", {"name": "Bob"})
 
 
 def face(
     x: float, person: Node | None = None, *, track: int = 1, quality: float = 1.0, time: float = 0.0, size: int = 50
 ) -> FaceVec:
-    return FaceVec((x, 0.0), (0, 0, size, size), track, person, None, quality, True, time)
+    return FaceVec((x, *REST), (0, 0, size, size), track, person, None, quality, True, time)
+
+
+@pytest.mark.parametrize(
+    ("vector", "found"),
+    [((0.1,) * 127, "127 numbers"), ((), "0 numbers"), ((float("nan"), *REST), "a number that is not finite")],
+)
+def test_a_face_needs_128_finite_numbers(vector: tuple[float, ...], found: str) -> None:
+    """Distances to any other vector would be meaningless, so each face would be a new visitor's."""
+    with pytest.raises(PlatformError, match=f"has {found}: give it 128 finite numbers"):
+        FaceVec(vector, (0, 0, 50, 50), 1)
 
 
 def decided(*faces: FaceVec) -> Decision | None:
@@ -51,8 +66,8 @@ def test_a_visitor_keeps_the_best_of_similar_vectors() -> None:
     for x, quality in ((0.0, 0.5), (0.01, 0.9), (0.3, 0.4), (0.5, 0.1), (0.9, 0.9)):
         one = one.met(face(x, quality=quality), least=0.3, threshold=0.5)
     # The visitor keeps neither 0.5, which was hardly visible, nor 0.9, which is another face.
-    assert one.vectors == ((0.9, (0.01, 0.0)), (0.4, (0.3, 0.0)))
-    assert one.good(0.5) == ((0.9, (0.01, 0.0)),)
+    assert one.vectors == ((0.9, (0.01, *REST)), (0.4, (0.3, *REST)))
+    assert one.good(0.5) == ((0.9, (0.01, *REST)),)
     assert best([(0.1 * n, (float(n),)) for n in range(20)], 3) == (
         (0.1 * 19, (19.0,)),
         (0.1 * 18, (18.0,)),
@@ -61,8 +76,8 @@ def test_a_visitor_keeps_the_best_of_similar_vectors() -> None:
 
 
 def test_a_new_track_is_assigned_to_a_visitor_by_memory_or_by_its_vectors() -> None:
-    ada = Visitor("a", ADA, known=True, vectors=((1.0, (0.0, 0.0)),))
-    stranger = Visitor("s", Node("Person"), vectors=((1.0, (0.4, 0.0)),))
+    ada = Visitor("a", ADA, known=True, vectors=((1.0, (0.0, *REST)),))
+    stranger = Visitor("s", Node("Person"), vectors=((1.0, (0.4, *REST)),))
     here = {"a": ada, "s": stranger}
     assert whose(here, face(3.0), Decision(ADA), 0.5) is ada
     assert whose(here, face(0.35), Decision(None), 0.5) is stranger

@@ -48,6 +48,7 @@ class Post:
     """
 
     longest = 100
+    longest_caption = 50
     rate = 1000.0
 
     def __init__(self) -> None:

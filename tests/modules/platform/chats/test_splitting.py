@@ -18,3 +18,12 @@ def test_a_text_is_split_between_paragraphs_or_else_sentences_or_else_words() ->
     assert split("One two three. Four five.", 20) == ["One two three.", "Four five."]
     assert split("One two three four five six", 20) == ["One two three four", "five six"]
     assert split("short", 20) == ["short"]
+
+
+def test_the_first_part_may_have_another_limit() -> None:
+    text = " ".join(["word"] * 50)
+    first, *rest = split(text, 100, first=20)
+    assert len(first) <= 20
+    assert [20 < len(part) <= 100 for part in rest] == [True] * 3
+    assert " ".join([first, *rest]) == text
+    assert split("", 100, first=20) == []

@@ -90,14 +90,14 @@ def test_an_edit_changes_an_answer_only_if_its_message_is_the_newest(tmp_path: P
     store.sent(store.next("a"), "a1")  # type: ignore[arg-type]
     edit = store.take(letter("two", id="m1", kind="edit"))
     assert edit is not None
-    assert store.answer_to(edit) == "a1"
+    assert store.answers_to(edit) == ["a1"]
     store.take(letter("three", id="m2"))
     late = store.take(letter("four", id="m1", kind="edit"))
     assert late is not None
-    assert store.answer_to(late) is None
+    assert store.answers_to(late) is None
     unanswered = store.take(letter("five", id="m2", kind="edit"))
     assert unanswered is not None
-    assert store.answer_to(unanswered) is None  # meanwhile, an edit of m1 was the newest message
+    assert store.answers_to(unanswered) is None  # meanwhile, an edit of m1 was the newest message
 
 
 def test_after_a_reaction_the_last_message_can_still_be_edited(tmp_path: Path) -> None:
@@ -109,7 +109,25 @@ def test_after_a_reaction_the_last_message_can_still_be_edited(tmp_path: Path) -
     store.take(letter("👍", id="a1", kind="reaction"))
     edit = store.take(letter("two", id="m1", kind="edit"))
     assert edit is not None
-    assert store.answer_to(edit) == "a1"
+    assert store.answers_to(edit) == ["a1"]
+
+
+def test_the_answers_to_a_message_are_those_that_were_neither_deleted_nor_replaced(tmp_path: Path) -> None:
+    store = opened(tmp_path)
+
+    def deliver(entry: Entry | None, *orders: tuple[str, str, str]) -> None:
+        assert entry is not None
+        messages = [Outgoing(key=id, chat="a", kind=kind, to=to) for kind, to, id in orders]  # type: ignore[arg-type]
+        store.commit([Answer(message, entry.n) for message in messages], [entry])
+        for message in messages:
+            store.sent(store.next("a"), message.key)  # type: ignore[arg-type]
+
+    deliver(store.take(letter("one", id="m1")), ("text", "", "a1"), ("text", "", "a2"), ("text", "", "a3"))
+    changed = [("edit", "a1", "a1"), ("edit", "a2", "b2"), ("delete", "a3", ""), ("text", "", "b3")]
+    deliver(store.take(letter("two", id="m1", kind="edit")), *changed)
+    last = store.take(letter("three", id="m1", kind="edit"))
+    assert last is not None
+    assert store.answers_to(last) == ["a1", "b2", "b3"]
 
 
 def test_a_message_is_dropped_after_several_crashes_but_not_after_clean_ends(tmp_path: Path) -> None:

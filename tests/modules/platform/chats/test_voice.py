@@ -2,9 +2,12 @@
 
 import asyncio
 import sys
+from pathlib import Path
 
 import pytest
 
+from modules.platform.chats.messenger import Post, letter, room
+from modules.platform.webio.visit import in_virtual_time
 from ravestate.errors import PlatformError
 from ravestate.modules.platform.chats.voice import VOICE, spoken, words_in
 
@@ -29,3 +32,32 @@ def test_without_the_speech_packages_the_error_says_what_to_install(monkeypatch:
     assert asyncio.run(spoken("Hello")) is None
     with pytest.raises(PlatformError, match=r"pip install 'ravestate\[voice\]'"):
         asyncio.run(words_in(b""))
+
+
+def test_an_answer_whose_words_do_not_fit_below_one_voice_note_is_sent_in_several(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    text = " ".join(["word"] * 25)
+
+    async def instead(*_: object) -> str:
+        return text
+
+    async def sound(words: str) -> bytes:
+        return words.encode()
+
+    monkeypatch.setattr("ravestate.modules.platform.chats.chat.words_in", instead)
+    monkeypatch.setattr("ravestate.modules.platform.chats.voice.spoken", sound)
+
+    @in_virtual_time
+    async def test() -> None:
+        post = Post()
+        post.files["1"] = b"note"
+        async with room(tmp_path, post) as opened:
+            opened.receive([letter(kind="voice", file="1")])
+            await post.said(4)
+        notes = post.sent[1:]
+        assert [(note.kind, note.data) for note in notes] == [("voice", note.text.encode()) for note in notes]
+        assert all(len(note.text) <= post.longest_caption for note in notes)
+        assert " ".join(note.text for note in notes) == text
+
+    test()

@@ -9,6 +9,7 @@ import pytest
 
 import ravestate as rs
 from modules.platform.ros.networks import OWN, PATIENCE, Network, free_port, the_loop, until
+from ravestate.errors import PlatformError
 from ravestate.modules import ros1, ros2
 from ravestate.testing import simulate
 
@@ -253,3 +254,22 @@ def test_in_a_simulation_the_test_writes_the_slots_and_no_node_connects() -> Non
 def test_a_wrong_argument_is_refused_at_the_declaration(wrong: dict[str, Any], words: str) -> None:
     with pytest.raises(rs.DeclarationError, match=words):
         ros2.subscriber(rs.Module("agent"), "chat", **{"topic": "/chat", "type": "std_msgs/String", **wrong})
+
+
+def test_in_virtual_time_a_rule_that_performs_a_goal_gets_an_error() -> None:
+    agent = rs.Module("agent")
+    walk = ros2.action(agent, "walk", action="/walk", type="test_msgs/Fibonacci")
+    reasons: list[str] = []
+
+    @agent.rule(when=rs.startup, writes=walk)
+    async def go(ctx: rs.RuleContext) -> None:
+        try:
+            await ros2.perform(ctx, walk, {"order": 5})
+        except PlatformError as error:
+            reasons.append(str(error))
+
+    del go
+    with simulate(agent) as sim:
+        sim.advance(1.0)
+        assert reasons == ["agent:walk has no node; in virtual time, there is none"]
+        assert sim.fired == ["agent:go"] and not sim.read(rs.activity)

@@ -15,6 +15,7 @@ VALUES: list[tuple[str, Any, Any]] = [
     ("std_msgs/String", {"data": "hällo"}, {"data": "hällo"}),
     ("std_msgs/String", "short", {"data": "short"}),
     ("std_msgs/Float64", 3, {"data": 3.0}),
+    ("std_msgs/Float64", numpy.int64(3), {"data": 3.0}),
     ("std_msgs/Empty", None, {}),
     ("geometry_msgs/Twist", {"linear": {"x": 1}}, {"linear": {"x": 1.0, "y": 0.0, "z": 0.0}, "angular": {"x": 0.0, "y": 0.0, "z": 0.0}}),
     ("std_msgs/ColorRGBA", {"r": numpy.float32(0.5)}, {"r": 0.5, "g": 0.0, "b": 0.0, "a": 0.0}),
@@ -49,6 +50,8 @@ def test_plain_data_can_be_encoded_as_a_message_and_decoded_again(
         ("std_msgs/Int32MultiArray", {"data": numpy.array([numpy.nan])}, "data takes int32, not nan"),
         ("geometry_msgs/PoseWithCovariance", {"covariance": numpy.eye(5)}, "takes 36 values, not 25"),
         ("sensor_msgs/CameraInfo", {"header": {"stamp": {"sec": True}}}, "takes int32, not True"),
+        ("std_msgs/Float32", {"data": True}, "takes float32, not True"),
+        ("std_msgs/Float64", {"data": 10**400}, "takes float64, not 1000"),
     ],
 )
 def test_the_error_names_a_value_that_does_not_fit_its_field(name: str, value: Any, words: str) -> None:

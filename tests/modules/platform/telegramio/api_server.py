@@ -203,6 +203,8 @@ class Server:
             fields["reply_to_message"] = {
                 "message_id": reply["message_id"], "date": 0, "chat": self.chat(chat)
             }  # fmt: skip
+        if "message_thread_id" in a:
+            fields["message_thread_id"] = int(a["message_thread_id"])
         message = self.add(bot, chat, True, **{"from": self.me(bot)}, **fields)
         await self.tell()
         return message
@@ -220,13 +222,18 @@ class Server:
         self.db.execute("INSERT INTO files VALUES (?, ?)", (id, data))
         return {"file_id": id, "file_unique_id": id, "file_size": len(data)}
 
+    def caption(self, a: dict[str, Any]) -> str:
+        if len(a.get("caption", "")) > LONGEST // 4:
+            raise Refusal(400, "Bad Request: message caption is too long")
+        return a.get("caption", "")
+
     async def sendPhoto(self, bot: str, a: dict[str, Any]) -> Any:
         photo = {**self.file(a["photo"]), "width": 90, "height": 60}
-        return await self.send(bot, a, photo=[photo], caption=a.get("caption", ""))
+        return await self.send(bot, a, photo=[photo], caption=self.caption(a))
 
     async def sendVoice(self, bot: str, a: dict[str, Any]) -> Any:
         voice = {**self.file(a["voice"]), "duration": 1, "mime_type": "audio/ogg"}
-        return await self.send(bot, a, voice=voice, caption=a.get("caption", ""))
+        return await self.send(bot, a, voice=voice, caption=self.caption(a))
 
     async def editMessageText(self, bot: str, a: dict[str, Any]) -> Any:
         message = self.own(bot, int(a["chat_id"]), int(a["message_id"]))
@@ -239,6 +246,14 @@ class Server:
         self.keep(bot, message)
         await self.tell()
         return message
+
+    async def deleteMessage(self, bot: str, a: dict[str, Any]) -> Any:
+        which = bot, int(a["chat_id"]), int(a["message_id"])
+        deleted = self.db.execute("DELETE FROM messages WHERE bot = ? AND chat = ? AND id = ? AND own", which)
+        if not deleted.rowcount:
+            raise Refusal(400, "Bad Request: message to delete not found")
+        await self.tell()
+        return True
 
     async def editMessageReplyMarkup(self, bot: str, a: dict[str, Any]) -> Any:
         self.own(bot, int(a["chat_id"]), int(a["message_id"]))

@@ -156,6 +156,26 @@ async def test_editing_the_last_message_changes_its_answer(bot: Bot, tmp_path: P
 
 
 @live
+async def test_editing_the_last_message_changes_or_deletes_each_part_of_its_answer(bot: Bot, tmp_path: Path) -> None:
+    wordy = rs.Module("wordy", requires=(rawio,))
+
+    @wordy.rule(when=rawio.input.changed, writes=rawio.output)
+    async def tell(ctx: rs.RuleContext) -> None:
+        for word in ctx.payload(rawio.input.changed).split():
+            ctx[rawio.output] = word
+
+    async with running(bot, tmp_path, wordy):
+        message = await bot.say(7, "one two three")
+        await bot.said(3)
+        await bot.do("fault", method="deleteMessage", kind="lost")  # the second attempt finds no message
+        await bot.do("edit", chat=7, id=message["message_id"], text="four five")
+        await bot.do("called", method="deleteMessage", count=2)
+        assert await bot.said(2) == ["7: four", "7: five"]
+        await bot.do("edit", chat=7, id=message["message_id"], text="six seven eight")
+        assert await bot.said(3) == ["7: six", "7: seven", "7: eight"]
+
+
+@live
 async def test_in_a_group_the_agent_answers_only_messages_that_address_it(bot: Bot, tmp_path: Path) -> None:
     async with running(bot, tmp_path):
         await bot.say(-5, "Hello all", user=7)
@@ -281,6 +301,41 @@ async def test_a_long_answer_is_sent_in_several_messages(bot: Bot, tmp_path: Pat
         await bot.say(7, "Tell me a tale")
         said = await bot.said(2)
         assert " ".join(each.removeprefix("7: ") for each in said) == tale
+
+
+@live
+async def test_the_words_that_do_not_fit_below_a_picture_follow_in_messages(bot: Bot, tmp_path: Path) -> None:
+    tale = " ".join(f"Sentence {n} ends." for n in range(400))
+    painter = rs.Module("painter", requires=(rawio,))
+
+    @painter.rule(when=rawio.input.changed, reads=telegramio.chat)
+    async def paint(ctx: rs.RuleContext) -> None:
+        ctx[telegramio.chat].send_picture(b"\x89PNG", tale, origin=ctx.origin)
+
+    async with running(bot, tmp_path, painter):
+        wish = await bot.say(-5, "Paint, Robin!", user=7)
+        said = await bot.said(3)
+        assert " ".join(each.removeprefix("-5: ") for each in said) == tale
+        [picture, *words] = await bot.do("said", count=3)
+        assert len(picture["caption"]) > 1000
+        assert picture["reply_to_message"]["message_id"] == wish["message_id"]
+        assert not any("reply_to_message" in each for each in words)
+
+
+@live
+async def test_all_parts_of_an_answer_go_to_the_topic_of_their_message(bot: Bot, tmp_path: Path) -> None:
+    painter = rs.Module("painter", requires=(rawio,))
+
+    @painter.rule(when=rawio.input.changed, reads=telegramio.chat, writes=rawio.output)
+    async def paint(ctx: rs.RuleContext) -> None:
+        ctx[rawio.output] = "words " * 1000
+        ctx[telegramio.chat].send_picture(b"\x89PNG", "a house", origin=ctx.origin)
+
+    async with running(bot, tmp_path, painter):
+        await bot.say(-(10**12) - 5, "Paint, Robin!", user=7, message_thread_id=3, is_topic_message=True)
+        assert [each.get("message_thread_id") for each in await bot.do("said", count=3)] == [3, 3, 3]
+        await bot.say(-(10**12) - 5, "Paint, Robin!", user=7, message_thread_id=4)  # a thread of replies is no topic
+        assert [each.get("message_thread_id") for each in (await bot.do("said", count=6))[3:]] == [None] * 3
 
 
 @live

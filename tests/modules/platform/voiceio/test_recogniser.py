@@ -123,18 +123,24 @@ def test_notes_about_sounds_and_unlikely_words_are_removed_from_the_text(
 
 
 @pytest.mark.parametrize("language", ["en-US", "EN"])
-def test_a_language_may_have_a_region_and_capitals(language: str, monkeypatch: pytest.MonkeyPatch) -> None:
+def test_a_language_may_have_a_region_and_capitals(language: str) -> None:
     """Whisper refuses both."""
-    one = Recogniser(Settings(model="tiny.en", language=language))
-    asked: list[str] = []
+    one, other = (Recogniser(Settings(model="tiny.en", language=code)) for code in (language, "en"))
+    assert one.process is other.process
+    one.close()
+    other.close()
 
-    def request(header: dict[str, Any], *_: object, **__: object) -> tuple[dict[str, object], bytes]:
-        asked.append(header["language"])
-        return {"text": "Hello.", "confidence": 0.9, "no_speech": 0.0}, b""
 
-    monkeypatch.setattr(one.process, "request", request)
-    one.recognise(b"")
-    assert asked == ["en"]
+@pytest.mark.parametrize(
+    ("model", "language", "reason"),
+    [("tiny.en", "de-AT", "knows only English, not the language 'de'"), ("base", "xx", "'xx' is not a valid language")],
+)
+def test_a_language_that_the_model_does_not_know_is_refused_before_the_conversation(
+    model: str, language: str, reason: str
+) -> None:
+    one = Recogniser(Settings(model=model, language=language))
+    with pytest.raises(PlatformError, match=rf"{reason}.*\. Set voiceio\.language, or take another model"):
+        one.load()
     one.close()
 
 

@@ -119,6 +119,7 @@ def test_the_user_interrupts_and_the_agent_stops_immediately(tmp_path: Path, mon
     story, *_, end = [one for one in said if one.speaker == "agent"]
     assert story.cut and WHOLE.startswith(story.text) and 8 < len(story.text.split()) < 25
     assert story.end <= 5.3 and not loud(tmp_path / "out.wav", 5.3, 5.5)
+    assert [one.speaker for one in said] == ["user", "agent", "user", "agent"]
     assert end.text == "Good night."
 
 
@@ -212,6 +213,25 @@ def test_a_text_that_the_voice_cannot_speak_has_the_time_at_which_the_voice_fail
     monkeypatch.setattr(Synthesiser, "speak", fail)
     user, agent = talk(file, None, storyteller(), settings=settings(filler_after=0.0))
     assert user.end < agent.start == agent.end and WHOLE.startswith(agent.text)
+
+
+def test_a_growing_utterance_counts_as_read_to_its_end_if_the_voice_fails(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """The voice fails at the third sentence. The sound of the first two sentences is played to its end."""
+    script(monkeypatch, "Tell me a story.")
+    speak = Synthesiser.speak
+
+    def fail(self: Synthesiser, text: str, *others: Any) -> Any:
+        if "noise" in text:
+            raise PlatformError("the voice is broken")
+        return speak(self, text, *others)
+
+    monkeypatch.setattr(Synthesiser, "speak", fail)
+    file, out = wav(tmp_path / "in.wav", track(TELL, length=3.0)), tmp_path / "out.wav"
+    _, agent = talk(file, out, storyteller(), settings=settings(filler_after=0.0))
+    assert agent.text == WHOLE and not agent.cut
+    assert 3.0 < agent.end - agent.start < 6.0 and loud(out, agent.end - 0.6, agent.end)
 
 
 def test_speech_that_the_end_of_the_agent_cuts_off_is_in_the_transcript(
@@ -377,6 +397,37 @@ def test_voiceio_uses_the_line_of_a_platform_that_serves_users_and_opens_no_devi
         assert sim.said == [WHOLE] and sim.read(rawio.heard) == WHOLE
         sim.put(rawio.sound, None)
         assert sim.read(voiceio.conversation) is None
+
+
+def test_a_growing_utterance_ends_with_its_line(monkeypatch: pytest.MonkeyPatch, tmp_path: Path) -> None:
+    from ravestate.modules.platform.voiceio.wav_line import WavLine
+    from ravestate.testing import simulate
+
+    script(monkeypatch, "Tell me a story.")
+
+    async def serve(_: Any) -> None: ...
+
+    teller = rs.Module("teller", requires=[rawio])
+
+    @teller.rule(when=rawio.input.changed, writes=rawio.output, emits=rawio.piece)
+    async def tell(ctx: rs.RuleContext) -> None:
+        for piece in STORY:
+            await ctx.sleep(1.0)
+            ctx.emit(rawio.piece, piece)
+        ctx[rawio.output] = WHOLE
+
+    del tell
+    platform = rs.Module("page", requires=[rawio], serve=serve)
+    with simulate(teller, platform, voiceio, settings=FAST) as sim:
+        sim.put(rawio.sound, WavLine(wav(tmp_path / "in.wav", track(TELL, length=2.0))))
+        sim.advance(4.5)
+        assert sim.read(voiceio.agent_speaking)
+        sim.put(rawio.sound, None)
+        assert not sim.read(voiceio.agent_speaking)
+        heard = sim.read(rawio.heard)
+        assert heard and WHOLE.startswith(heard) and heard != WHOLE
+        sim.advance(10.0)
+        assert sim.said == [WHOLE] and sim.read(rawio.heard) == heard and not sim.read(rs.activity)
 
 
 def test_a_line_that_a_platform_provides_at_the_start_is_opened_only_once(

@@ -31,6 +31,22 @@ def test_prosody_changes_the_speed(name: str) -> None:
     assert slow > 1.15 * normal
 
 
+@pytest.mark.parametrize("name", ["espeak", "piper"])
+@pytest.mark.parametrize("factor", [0.25, 4.0])
+def test_a_voice_can_speak_in_every_manner(name: str, factor: float) -> None:
+    assert len(voice(name).speak("Oh, hello!", Prosody(factor, factor, factor)).sound) > 4800
+
+
+@pytest.mark.parametrize("value", [0.0, -1.0, 0.2, 5.0, float("nan"), float("inf")])
+def test_a_manner_that_no_voice_has_is_refused(value: float) -> None:
+    """Otherwise, the voice would fail at each sentence, or take too long."""
+    with pytest.raises(ValueError, match=rf"rate of a Prosody must be from 0\.25 to 4, not {value}"):
+        Prosody(rate=value)
+    for name in ("pitch", "range"):
+        with pytest.raises(ValueError, match=f"{name} of a Prosody must be from 0 to 4, not -1"):
+            Prosody(**{name: -1.0})
+
+
 def test_prosody_changes_the_pitch_of_espeak() -> None:
     low, high = (voice("espeak").speak("Oh!", Prosody(pitch=pitch)).sound for pitch in (0.8, 1.3))
     assert low != high
@@ -40,9 +56,17 @@ def test_the_error_names_a_missing_voice() -> None:
     with pytest.raises(PlatformError, match="has no voice 'en_US-nobody'"):
         Synthesiser(Settings(voice="en_US-nobody"))
     nobody = Synthesiser(Settings(voice="espeak:xx-none"))
-    with pytest.raises(PlatformError, match="has no voice 'xx-none'"):
+    with pytest.raises(PlatformError, match=r"has no voice 'xx-none': .* voiceio\.voice"):
         nobody.load()
     nobody.close()
+
+
+@pytest.mark.parametrize("language", ["de-AT", "zh"])
+def test_espeak_falls_back_to_the_voice_that_is_nearest_to_the_language(language: str) -> None:
+    """It has no voice for Austria, and the name of its Chinese voice is not ``zh``."""
+    near = Synthesiser(Settings(voice="espeak", language=language))
+    near.load()
+    near.close()
 
 
 def test_without_piper_the_default_voice_is_espeak(monkeypatch: pytest.MonkeyPatch) -> None:

@@ -58,7 +58,7 @@ def test_the_agent_waits_for_no_silence_longer_than_the_setting() -> None:
 
 
 def test_completeness_and_back_channels_are_recognised_in_german() -> None:
-    assert completeness("Ich möchte in die", "de") == "open"
+    assert completeness("Ich möchte in die", "DE-at") == "open"
     assert completeness("Ich möchte nach Hause.", "de") == "complete"
     assert is_back_channel("Ja, genau.", "de") and not is_back_channel("Nein.", "de")
 

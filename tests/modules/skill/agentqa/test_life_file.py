@@ -183,7 +183,7 @@ def test_an_empty_file_changes_nothing(text: str, tmp_path: Path) -> None:
         ("facts:\n  name: ~", "the agent needs a name"),
         ("facts:\n  age: 3", "mine.yaml:2: age is computed, and cannot be written here: write born:"),
         ("facts:\n  name: [a, b]", "name is one text"),
-        ("facts:\n  a: 1\n  a: 2", "mine.yaml:3: 'a' is here a second time"),
+        ("facts:\n  a: 1\n  a: 2", "mine.yaml:3: 'a' is here twice (first in line 2)"),
         ("facts:\n  my thing!: 1", "is not a name"),
         ("facts:\n  likes: [[a]]", "this must be a text, not a sequence"),
         ("facts:\n  likes: [a, ~]", "this must be a text, but it is empty"),

@@ -54,6 +54,45 @@ def test_a_question_is_answered_with_its_source(settings: dict[str, dict[str, An
         assert "genqa:say" in sim.fired
 
 
+def test_a_fragment_asks_for_the_kind_of_the_question_that_it_completes(settings: dict[str, dict[str, Any]]) -> None:
+    """*And in Mali?* alone asks for a place; after *how many* it asks for an amount."""
+    with simulate(genqa, talk, settings=settings) as sim:
+        for text in ("What is the capital of Chad?", "How many people live in Chad?", "And in Mali?"):
+            sim.say(text)
+        assert "The population of Mali is" in sim.said[-1]
+
+
+@pytest.mark.parametrize(
+    ("text", "answers"),
+    [
+        ("What is the capital of Peru and who wrote Hamlet?", ("Lima", "Shakespeare")),
+        ("Where is Bolivia and what is its capital?", ("South America", "La Paz")),
+        ("Who wrote Faust? And when was he born?", ("Goethe was a German poet", "1749")),
+        ("Who are you? What is the capital of Chad?", ("N'Djamena",)),
+        ("Who was Napoleon and when did he die?", ("general", "1821")),
+        ("When and where was Goethe born?", ("1749 in Frankfurt",)),
+    ],
+)
+def test_each_question_of_an_utterance_is_answered(
+    settings: dict[str, dict[str, Any]], text: str, answers: tuple[str, ...]
+) -> None:
+    with simulate(genqa, talk, settings=settings) as sim:
+        sim.say("What is the capital of Mali?")
+        sim.say(text)
+        assert len(sim.said) == 2
+        for answer in answers:
+            assert answer in sim.said[-1]
+
+
+def test_after_a_question_about_the_agent_a_fragment_follows_no_earlier_question(
+    settings: dict[str, dict[str, Any]],
+) -> None:
+    with simulate(genqa, talk, settings=settings) as sim:
+        sim.say("What is the capital of Mali?")
+        sim.say("Who are you? And in Peru?")
+        assert sim.said[-1] == "Hm."
+
+
 def test_the_sample_conversation_of_the_paper_is_reproduced(settings: dict[str, dict[str, Any]]) -> None:
     """*Will it rain?* is small talk; *when did it start to rain?* asks for a fact."""
     with simulate(genqa, talk, settings=settings) as sim:

@@ -85,6 +85,27 @@ def test_facts_of_different_kinds_are_kept_side_by_side(file: Path, look: Look) 
     assert look()["Nia"]["sibling_of"] == ["Kim", "Kim"]
 
 
+def test_a_hobby_is_confirmed_by_its_noun_alone(file: Path) -> None:
+    with agent(file) as sim:
+        sim.say("I play chess on Sundays")
+        assert dict(sim.read(persqa.facts)) == {"hobby": ("playing chess",)}
+        assert meant(answers(sim, "do I like chess?"), "confirm")
+        assert meant(answers(sim, "do I like football?"), "deny")
+
+
+def test_what_others_say_about_the_user_is_no_fact(file: Path) -> None:
+    with agent(file) as sim:
+        sim.say("people say I am from Spain")
+        sim.say("Facebook says I'm 52")
+        assert dict(sim.read(persqa.facts)) == {}
+
+
+def test_a_clear_value_stays_beside_a_doubtful_one_of_the_same_topic(file: Path) -> None:
+    with agent(file) as sim:
+        sim.say("I grew up in Cairo and studied physics in Delft")
+        assert sim.read(persqa.facts)["childhood"] == ("Cairo",)
+
+
 def test_a_birthplace_is_an_answer_to_where_are_you_from(file: Path) -> None:
     with agent(file, topics=["origin"]) as sim:
         assert asked(sim) == "origin"

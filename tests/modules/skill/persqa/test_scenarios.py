@@ -227,6 +227,16 @@ def test_the_user_can_answer_that_they_have_none_or_do_not_know(file: Path, look
     assert look() == {"Ada": {}}
 
 
+@pytest.mark.parametrize("text", ["I was away.", "sorry, I was in the kitchen", "I was asleep"])
+def test_an_excuse_is_no_answer(file: Path, text: str) -> None:
+    with agent(file, topics=["hobby"]) as sim:
+        assert asked(sim) == "hobby"
+        assert answers(sim, text) == "I see."  # small talk
+        assert dict(sim.read(persqa.facts)) == {} and not sim.read(persqa.talk).closed
+        sim.say("chess")
+        assert sim.read(persqa.facts) == {"hobby": ("chess",)}
+
+
 def test_the_agent_asks_for_details_if_the_user_just_says_yes(file: Path) -> None:
     with agent(file, topics=["hobby"]) as sim:
         assert asked(sim) == "hobby"

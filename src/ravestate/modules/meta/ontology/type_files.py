@@ -180,13 +180,8 @@ def _entries(file: str, node: yaml.Node, meaning: str) -> Iterator[tuple[yaml.No
     if kind_of(node) != "mapping":
         example = "write for example\nBoat:\n  has: {length: number}"
         raise fault(file, node, f"{meaning}, but this is not a mapping: {example}")
-    seen: set[str] = set()
     for key, value in node.value:
-        name = _text(file, key, "a name is a text")
-        if name in seen:
-            raise fault(file, key, f"{name} is here twice: write it once, with all of its parts")
-        seen.add(name)
-        yield key, name, value
+        yield key, _text(file, key, "a name is a text"), value
 
 
 def _parts(file: str, node: yaml.Node, owner: str, what: str, known: tuple[str, ...]) -> dict[str, yaml.Node]:

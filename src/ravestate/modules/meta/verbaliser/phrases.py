@@ -251,13 +251,7 @@ def _entries(name: str, node: yaml.Node, meaning: str) -> Iterator[tuple[yaml.No
         raise fault(name, node, f"{meaning}, but this is not a mapping: write for example\ngreet:\n  en: [Hello!]")
     if _added(name, node):
         raise fault(name, node, "!add goes in front of phrases: write en: !add [...]")
-    seen: set[str] = set()
-    for key, value in node.value:
-        if kind_of(key) == "scalar":
-            if key.value in seen:
-                raise fault(name, key, f"{key.value!r} is here a second time")
-            seen.add(key.value)
-        yield key, value
+    yield from node.value
 
 
 def _text_of(name: str, node: yaml.Node, meaning: str) -> str:

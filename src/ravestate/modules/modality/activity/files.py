@@ -16,7 +16,7 @@ from pathlib import Path
 from ravestate.errors import PlatformError
 from ravestate.folders import replace_file, user_folder
 
-from .pose import Pose, checked
+from .pose import Pose
 from .recogniser import Recogniser, numpy
 
 SUFFIX = ".npz"
@@ -50,7 +50,7 @@ def read(file: Path) -> tuple[str, tuple[Pose, ...]]:
         ) from None
     if times.ndim != 1 or len(times) != len(points):
         raise PlatformError(f"activity: {file} has {times.size} times for {len(points)} poses: give one for each")
-    return name, tuple(Pose(float(at), checked(one)) for at, one in zip(times, points, strict=True))
+    return name, tuple(Pose(float(at), one) for at, one in zip(times, points, strict=True))
 
 
 def write(file: Path, poses: Sequence[Pose], name: str = "") -> None:
@@ -102,6 +102,7 @@ def keep(folder: Path, name: str, poses: Sequence[Pose]) -> Path:
         PlatformError: The file cannot be written.
     """
     stem = re.sub(r"[^\w]+", "-", name.lower()).strip("-") or "activity"
+    stem = stem.encode()[:LONGEST].decode(errors="ignore")  # most file systems limit a name to 255 bytes
     number = 1
     while (file := folder / f"{stem}-{number}{SUFFIX}").exists():
         number += 1

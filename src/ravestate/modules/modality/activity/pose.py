@@ -17,13 +17,20 @@ LANDMARKS = 33
 
 @dataclass(frozen=True, slots=True, eq=False)
 class Pose:
-    """The landmarks of one body at one time. Two poses are equal only if they are the same object."""
+    """The landmarks of one body at one time. Two poses are equal only if they are the same object.
+
+    Raises:
+        PlatformError: The points are not landmarks of this shape.
+    """
 
     at: float
     """Seconds, on the context's clock or since the beginning of the video."""
     points: NDArray[np.float32]
     """Shape (33, 4): x to the right, y down, z away from the camera, and visibility (0 to 1). All three axes have the
     same unit, for example the height of the picture."""
+
+    def __post_init__(self) -> None:
+        object.__setattr__(self, "points", checked(self.points))
 
 
 def pose_of(points: object, at: float, width: float, height: float) -> Pose:

@@ -52,4 +52,4 @@ felt: rs.Slot[Feeling | None] = module.slot("felt", None, always=True, keep="lat
 """The agent's last feeling; None before the first one."""
 
 sorrow: rs.Slot[int] = module.slot("sorrow", 0)
-"""The number of further utterances for which the user's last words of sorrow still count."""
+"""The number of utterances for which the user's words of sorrow still count, including the last utterance."""

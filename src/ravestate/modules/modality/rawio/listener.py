@@ -66,3 +66,14 @@ def carry(module: rs.Module, slot: rs.Slot[Any]) -> None:
         """End a growing utterance that no rule has written as a whole."""
         if listener := ctx[slot]:
             listener.fall_silent()
+
+    @module.rule(
+        when=rs.error.max_age(None).detached() & speaking.holds(bool), writes=speaking, detached=True, background=True
+    )
+    async def end_failed(ctx: rs.RuleContext) -> rs.Resign | None:
+        """End a growing utterance after the rule that produced it has failed."""
+        failed = ctx.policy.rules.get(ctx.payload(rs.error).rule)
+        if failed is None or speaking not in failed.writes:
+            return rs.Resign("the rule that failed produced no utterance")
+        ctx[speaking] = False
+        return None

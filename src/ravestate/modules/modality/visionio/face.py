@@ -3,14 +3,18 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
+from math import isfinite
 
+from ravestate.errors import PlatformError
 from ravestate.modules.meta.ontology import Node
 
 Box = tuple[int, int, int, int]
 """x, y, width and height (pixels of the picture), from the picture's upper left corner."""
 
+NUMBERS = 128
+
 Vector = tuple[float, ...]
-"""A face as 128 numbers. The Euclidean distance of two vectors shows whether they belong to the same person."""
+"""A face as `NUMBERS` finite numbers. The Euclidean distance of two vectors shows whether they belong to the same person."""
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -25,7 +29,10 @@ class FaceVec:
         distance: The Euclidean distance to that person's nearest stored vector; None if `person` is None.
         quality: The visibility of the face in the picture from which `vector` comes (0 to 1).
         fresh: Whether `vector` comes from this picture, and not from an earlier one.
-        time: The time of the picture (seconds on the context's clock); None means now.
+        time: The time of the picture (seconds on the context's clock); None, or a time in the future, means now.
+
+    Raises:
+        PlatformError: The vector does not consist of 128 finite numbers.
     """
 
     vector: Vector
@@ -36,6 +43,11 @@ class FaceVec:
     quality: float = 1.0
     fresh: bool = True
     time: float | None = None
+
+    def __post_init__(self) -> None:
+        if len(self.vector) != NUMBERS or not all(map(isfinite, self.vector)):
+            found = f"{len(self.vector)} numbers" if len(self.vector) != NUMBERS else "a number that is not finite"
+            raise PlatformError(f"visionio: the vector of a face has {found}: give it {NUMBERS} finite numbers")
 
     def __repr__(self) -> str:
         who = self.person.get("name") if self.person else None

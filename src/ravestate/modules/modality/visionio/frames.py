@@ -52,7 +52,7 @@ class Frames:
         """Whether the camera is closed, so that no more pictures come."""
         self._newest: Frame | None = None
         self._lock = threading.Lock()
-        self._waiting: dict[str, tuple[asyncio.AbstractEventLoop, asyncio.Event]] = {}
+        self._waiting: set[tuple[asyncio.AbstractEventLoop, asyncio.Event]] = set()
 
     def put(self, data: bytes | bytearray | memoryview, shape: tuple[int, int] | None = None) -> None:
         """Accept a new picture, which replaces the previous one. Thread-safe.
@@ -106,8 +106,8 @@ class Frames:
                     self._wake()
                 if frame is not None or self.closed:
                     return frame
-                event = self._wait("next")
-            await event.wait()
+                waiter = self._join()
+            await self._wait(waiter)
 
     async def taken(self) -> None:
         """Wait until `next` has returned the newest picture, so that the caller can `put` another one."""
@@ -115,15 +115,22 @@ class Frames:
             with self._lock:
                 if self._newest is None or self.closed:
                     return
-                event = self._wait("taken")
-            await event.wait()
+                waiter = self._join()
+            await self._wait(waiter)
 
-    def _wait(self, caller: str) -> asyncio.Event:
-        event = asyncio.Event()
-        self._waiting[caller] = asyncio.get_running_loop(), event
-        return event
+    def _join(self) -> tuple[asyncio.AbstractEventLoop, asyncio.Event]:
+        waiter = asyncio.get_running_loop(), asyncio.Event()
+        self._waiting.add(waiter)
+        return waiter
+
+    async def _wait(self, waiter: tuple[asyncio.AbstractEventLoop, asyncio.Event]) -> None:
+        try:
+            await waiter[1].wait()
+        finally:
+            with self._lock:
+                self._waiting.discard(waiter)  # if the call is cancelled, its loop may close before the next picture
 
     def _wake(self) -> None:
-        waiting, self._waiting = self._waiting, {}
-        for loop, event in waiting.values():
+        waiting, self._waiting = self._waiting, set()
+        for loop, event in waiting:
             loop.call_soon_threadsafe(event.set)

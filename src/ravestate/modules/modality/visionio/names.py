@@ -9,6 +9,7 @@ from pydantic import Field
 
 import ravestate as rs
 from ravestate.modules import activity, idle, interloc, ontology, rawio, verbaliser
+from ravestate.settings import NameOrPath
 
 from .face import FaceVec, Look, Pose
 from .tracks import Sighting
@@ -24,7 +25,7 @@ Share = Annotated[float, Field(ge=0, le=1)]
 class Settings(rs.Settings):
     """The settings of visionio: the camera, and the limits for recognising faces."""
 
-    source: str = "default"
+    source: NameOrPath = "default"
     """The camera: ``default``, a device (``/dev/video0``), a video file, or a folder of pictures. Empty means no
     camera. A platform's camera in ``visionio.camera`` takes priority."""
     loop: bool = False

@@ -11,12 +11,11 @@ from math import dist
 
 from ravestate.modules.meta.ontology import Graph, Node
 
-from .face import Vector
+from .face import NUMBERS, Vector
 from .visitors import ALIKE
 
 RELATION = "has_face"
 """The relation from a person to their faces."""
-NUMBERS = 128
 MERGE = 0.45
 """Two faces up to this distance surely belong to one person. If two people have the same name and such faces, memory
 merges them."""

@@ -189,8 +189,7 @@ async def track(ctx: rs.RuleContext) -> None:
     """Keep a history of faces with new vectors. When enough vectors agree, note the person who has come."""
     settings: Settings = ctx.settings
     face = ctx.payload(facevec)
-    if face.time is None:
-        face = replace(face, time=ctx.now)
+    face = replace(face, time=ctx.now if face.time is None else min(ctx.now, face.time))
     decision = None
     if face.fresh:
         seen = (*ctx[history], face)[-settings.history :]
@@ -301,7 +300,7 @@ async def move_up(ctx: rs.RuleContext) -> rs.Resign | None:
 async def leave(ctx: rs.RuleContext) -> rs.Resign | None:
     """Note people who have left, and drop the vectors of their faces."""
     settings: Settings = ctx.settings
-    now, all_visitors = ctx.payload(looked).time, dict(ctx[visitors])
+    now, all_visitors = min(ctx.now, ctx.payload(looked).time), dict(ctx[visitors])
     absent = gone(all_visitors, now, settings.gone_after)
     present = {number for visitor in all_visitors.values() if visitor not in absent for number in visitor.tracks}
     before = ctx[history]

@@ -64,7 +64,8 @@ class Chat:
         self._hearing: Entry | None = None  # the message that the agent is about to hear
         self._open: list[Entry] = []  # messages that the agent has heard, and may still answer
         self._said: list[Answer] = []  # answers that are not in the store yet
-        self._repeated: Counter[str] = Counter()  # answers from before a crash, which the store has kept
+        self._repeated: Counter[object] = Counter()  # answers from before a crash, which the store has kept
+        self._replaceable: dict[int, list[str]] = {}  # for each edit: the earlier answers that it has not replaced
         self._draft = Draft(id)
         self._state: Literal["open", "leaving", "gone"] = "open"
         self._mute = False  # whether the agent's words are dropped
@@ -121,6 +122,7 @@ class Chat:
         first = self._waiting[0]
         # If the process dies, the next process hears the same message with the same random choices.
         context = self._room.agent.context(seed=zlib.crc32(f"{self.id} {first.message.key}".encode()))
+        self._repeated.update(_content(None, said) for said in self._room.store.alone(self.id))
         async with context:
             self.context, self._mute = context, False
             context.put(self._room.slot, self)
@@ -154,6 +156,7 @@ class Chat:
         self._hearing = None
         self._open = []
         self._repeated.clear()
+        self._replaceable.clear()
 
     async def _hear_all(self) -> None:
         while self._state == "open":
@@ -189,30 +192,41 @@ class Chat:
     async def _hear(self, entry: Entry) -> None:
         context, message = self.context, entry.message
         assert context is not None  # the conversation runs
-        for answer in self._room.store.recorded(entry.n):
-            self._repeated[answer.text] += 1
-        new = await self._meet(context, message.person)
+        self._repeated.update(_content(entry.n, said) for said in self._room.store.recorded(entry.n))
+        new = await self._meet(context, entry)
         kind = message.kind
         if kind == "command" and message.text in COMMANDS:
             await self._obey(context, entry, new)
         elif kind == "reaction":
-            context.emit(rawio.reaction, message.text)
+            context.emit(rawio.reaction, message.text, origin=entry)
         elif kind in ("picture", "voice"):
             await self._open_file(context, entry)
-        elif kind == "edit" and self._room.store.answer_to(entry) is None:
+        elif kind == "edit" and not self._can_edit(entry):
             pass  # the edited message was not the last one: ignore the edit
         elif message.text.strip():
-            context.put(rawio.input, printable(message.text))
+            context.put(rawio.input, printable(message.text), origin=entry)
 
-    async def _meet(self, context: Context, person: Person) -> bool:
-        """Add a person to the present users. Return whether they were absent, and are new to the agent in this chat."""
-        name = self._room.name
+    def _can_edit(self, edit: Entry) -> bool:
+        """Note the answers that an edit will replace. Return whether the edited message is the last one."""
+        old = self._room.store.answers_to(edit)
+        if old is None:
+            return False
+        for entry in self._open:
+            if entry.message.id == edit.message.id:  # of several edits, the last one replaces the answers
+                self._replaceable.pop(entry.n, None)
+        replaced = [each.to for each in self._room.store.recorded(edit.n) if each.kind == "edit"]
+        self._replaceable[edit.n] = [answer for answer in old if answer not in replaced]
+        return True
+
+    async def _meet(self, context: Context, entry: Entry) -> bool:
+        """Add a message's sender to the present users. Return whether they were absent, and are new in this chat."""
+        name, person = self._room.name, entry.message.person
         if people.present(context, name, person):
             return False
         new = not self._room.store.knows(self.id, person)
         # Greet nobody twice: mute the greeting. This would also mute answers to others, so wait for the answers first.
         self._mute = not new and await self._answered(FAREWELL)
-        await people.welcome(context, name, person, self._room.log)
+        await people.welcome(context, name, person, self._room.log, entry)
         with contextlib.suppress(TimeoutError):
             async with asyncio.timeout(FAREWELL):
                 await context.quiet()
@@ -235,18 +249,18 @@ class Chat:
             if reply == FORGOTTEN:
                 self._mute = True
                 self._keep_for_later(message.person)
-            self._leave_soon(context, message.person, forgotten=reply == FORGOTTEN)
+            self._leave_soon(context, entry, forgotten=reply == FORGOTTEN)
         elif message.text == "stop":
-            self._leave_soon(context, message.person)
+            self._leave_soon(context, entry)
             with contextlib.suppress(TimeoutError):
                 async with asyncio.timeout(FAREWELL):
                     await context.quiet()
         elif not (message.text == "start" and new and self._spoken):
             command = Command(message.text, explanation(context.read(interloc.agent)))
-            context.emit(self._room.command, command)
+            context.emit(self._room.command, command, origin=entry)
 
-    def _leave_soon(self, context: Context, person: Person, forgotten: bool = False) -> None:
-        people.leave(context, people.key(self._room.name, person))
+    def _leave_soon(self, context: Context, entry: Entry, forgotten: bool = False) -> None:
+        people.leave(context, people.key(self._room.name, entry.message.person), entry)
         if not context.read(interloc.users) or forgotten:
             self.rest()
 
@@ -271,7 +285,7 @@ class Chat:
             self._reply(UNSEEN)
             return
         if message.kind == "picture":
-            context.put(rawio.picture, data)
+            context.put(rawio.picture, data, origin=entry)
             text = message.text
         else:
             try:
@@ -283,14 +297,15 @@ class Chat:
             if not text.strip():
                 self._reply(UNCLEAR)
         if text.strip():
-            context.put(rawio.input, printable(text))
+            context.put(rawio.input, printable(text), origin=entry)
 
     # ------------------------------------------------------------------------------------ from the agent
 
-    def utter(self, text: str) -> None:
-        """Send a whole utterance of the agent to the chat."""
-        self._draft.text = ""
-        self._speak(printable(text).strip(), self._cause())
+    def utter(self, text: str, origin: object = None) -> None:
+        """Send a whole utterance of the agent to the chat. `origin` is the ``ctx.origin`` of a rule for the utterance."""
+        cause = _cause(origin)
+        self._draft.take(cause)
+        self._speak(printable(text).strip(), cause)
 
     def _reply(self, text: str) -> None:
         """Answer the message that the agent is about to hear, without a rule."""
@@ -300,52 +315,61 @@ class Chat:
         if not text or self._silent:
             return
         emoji = self._room.carrier.can_react(text) and cause is not None
-        for n, part in enumerate([text] if emoji else split(text, self._room.carrier.longest)):
-            if self._repeated[part] > 0:  # the process died after this answer
-                self._repeated[part] -= 1
-            else:
-                self._say(Outgoing(key="", chat=self.id, text=part), cause, emoji=emoji, first=n == 0)
+        for n, part in enumerate([text] if emoji else split(text, self._longest(cause))):
+            self._say(Outgoing(key="", chat=self.id, text=part), cause, emoji=emoji, first=n == 0)
 
-    def send_picture(self, data: bytes, caption: str = "") -> None:
-        """Send a picture (the bytes of a JPEG or PNG file) to the chat."""
-        if not self._silent:
-            self._say(Outgoing(key="", chat=self.id, kind="picture", text=caption, data=data), self._cause())
+    def send_picture(self, data: bytes, caption: str = "", *, origin: object = None) -> None:
+        """Send a picture (the bytes of a JPEG or PNG file) to the chat.
+
+        Args:
+            data: The picture.
+            caption: The words below the picture.
+            origin: The rule's ``ctx.origin``, if the picture is the answer to a message.
+        """
+        if self._silent:
+            return
+        cause = _cause(origin)
+        words = split(caption, self._longest(cause), first=self._room.carrier.longest_caption) or [""]
+        self._say(Outgoing(key="", chat=self.id, kind="picture", text=words[0], data=data), cause)
+        for part in words[1:]:
+            self._say(Outgoing(key="", chat=self.id, text=part), cause, first=False)
+
+    def _longest(self, cause: Entry | None) -> int:
+        """Return the maximum number of characters in a message that answers `cause`. Voice is answered by voice."""
+        carrier = self._room.carrier
+        return carrier.longest_caption if cause is not None and cause.message.kind == "voice" else carrier.longest
 
     @property
     def _silent(self) -> bool:
         return self._mute or self._state == "gone"
 
-    def _cause(self) -> Entry | None:
-        """Return the message that the agent answers now: the oldest message without an answer (law L12)."""
-        answered = {answer.cause for answer in self._said}
-        waiting = (entry for entry in self._open if entry.n not in answered)
-        return next(waiting, None) or self._hearing or (self._open[-1] if self._open else None)
-
     def _say(self, message: Outgoing, cause: Entry | None, *, emoji: bool = False, first: bool = True) -> None:
+        content = _content(None if cause is None else cause.n, message)
+        if self._repeated[content] > 0:  # the process died after this answer
+            self._repeated[content] -= 1
+            return
         if cause is not None:
             heard = cause.message
+            message = replace(message, topic=heard.topic)
             if emoji:
                 message = replace(message, kind="reaction", to=heard.id)
-            elif message.kind == "text" and heard.kind == "edit" and first:
-                if answer := self._room.store.answer_to(cause):
-                    message = replace(message, kind="edit", to=answer)
+            elif message.kind == "text" and (old := self._replaceable.get(cause.n)):
+                message = replace(message, kind="edit", to=old.pop(0))
             elif heard.kind == "voice" and message.kind == "text":
                 message = replace(message, kind="voice", to=heard.id)
             elif first and heard.kind != "reaction" and (heard.group or len(self._open) > 1):
                 message = replace(message, to=heard.id)
-        key = secrets.token_hex(12)
-        self._said.append(Answer(replace(message, key=key), None if cause is None else cause.n))
+        self._said.append(_answer(message, None if cause is None else cause.n))
         if self._flush is None:
             self._flush = asyncio.get_running_loop().call_later(GRACE if self._following else 0.0, self._flush_said)
 
-    def grow(self, piece: str) -> None:
+    def grow(self, piece: str, origin: object = None) -> None:
         """Add a piece to the growing utterance. The utterance becomes a message when it is complete."""
-        self._draft.grow(piece)
+        self._draft.grow(piece, _cause(origin))
 
-    def fall_silent(self) -> None:
+    def fall_silent(self, origin: object = None) -> None:
         """Send the growing utterance as it is, if no rule has written it as a whole."""
-        if self._draft.text:
-            self.utter(self._draft.text)
+        self.utter(self._draft.take(_cause(origin)), origin)
 
     # ------------------------------------------------------------------------------------ to the store
 
@@ -370,6 +394,13 @@ class Chat:
                 self._following = None
         self._room.make_room()
 
+    def _deletions(self, entry: Entry) -> list[Answer]:
+        """Return the orders to delete the earlier answers that an edit has not replaced, if it has any answer."""
+        left = self._replaceable.get(entry.n)
+        if not left or not (any(each.cause == entry.n for each in self._said) or self._room.store.recorded(entry.n)):
+            return []
+        return [_answer(Outgoing(key="", chat=self.id, kind="delete", to=id), entry.n) for id in left]
+
     def _flush_said(self, attempt: int = 0) -> None:
         """Store the answers now, even if the agent is still working. If the file cannot be written, try again later."""
         self._flush = None
@@ -385,11 +416,28 @@ class Chat:
             self._flush.cancel()
             self._flush = None
         done = [entry for entry in self._open if entry in done]
-        if self._said or done:
-            self._room.store.commit(self._said, done)
-        if self._said:
+        said = [*self._said, *(answer for entry in done for answer in self._deletions(entry))]
+        if said or done:
+            self._room.store.commit(said, done)
+        if said:
             self._room.sender.wake(self.id)
         self._said = []
+        for entry in done:
+            self._replaceable.pop(entry.n, None)
         self._open = [entry for entry in self._open if entry not in done]
-        if not self._open and self._hearing is None:
+        if not self.busy:
             self._repeated.clear()
+
+
+def _answer(message: Outgoing, cause: int | None) -> Answer:
+    return Answer(replace(message, key=secrets.token_hex(12)), cause)
+
+
+def _cause(origin: object) -> Entry | None:
+    """Return the message that an output answers; None if the agent speaks on its own initiative."""
+    return origin if isinstance(origin, Entry) else None
+
+
+def _content(cause: int | None, message: Outgoing) -> object:
+    """Return the part of a message by which the chat recognises it if the agent repeats it after a crash."""
+    return cause, message.text, message.data

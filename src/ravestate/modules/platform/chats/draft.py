@@ -13,6 +13,7 @@ from .messages import DeliveryError
 
 if TYPE_CHECKING:
     from .room import Room
+    from .store import Entry
 
 SLOW = 0.5
 """The chat shows that the agent is writing after the agent has worked for this many seconds."""
@@ -25,30 +26,38 @@ GROWTH = 1.0
 
 
 class Draft:
-    """A growing answer of the agent in a chat."""
+    """The growing answers of the agent in a chat. The chat shows the answer that grew last."""
 
     def __init__(self, chat: str) -> None:
-        self.text = ""
-        """The words so far."""
+        self._texts: dict[Entry | None, str] = {}  # for each message: the words so far of its growing answer
+        self._last: Entry | None = None  # the message whose answer grew last
         self._chat = chat
         self._grown = asyncio.Event()
 
-    def grow(self, piece: str) -> None:
-        """Add a piece."""
-        self.text += without_controls(piece)
+    def grow(self, piece: str, cause: Entry | None) -> None:
+        """Add a piece to the growing answer to a message (None: to no message)."""
+        self._texts[cause] = self._texts.get(cause, "") + without_controls(piece)
+        self._last = cause
         self._grown.set()
+
+    def take(self, cause: Entry | None) -> str:
+        """Remove the growing answer to a message, and return its words."""
+        return self._texts.pop(cause, "")
 
     async def show(self, room: Room, silent: Callable[[], bool]) -> None:
         """Show that the agent is writing, with the words so far, until cancelled. Pause while `silent` returns True."""
-        await asyncio.sleep(SLOW)
-        while True:
-            self._grown.clear()
-            if not silent() and room.sender.pace.spare():  # messages take priority
-                try:
-                    await room.sender.show_work(self._chat, printable(self.text).strip())
-                except DeliveryError as error:  # it does no harm if the chat shows no draft
-                    await asyncio.sleep(error.wait)
-            await asyncio.sleep(GROWTH)
-            with contextlib.suppress(TimeoutError):
-                async with asyncio.timeout(SHOWN - GROWTH):
-                    await self._grown.wait()
+        try:
+            await asyncio.sleep(SLOW)
+            while True:
+                self._grown.clear()
+                if not silent() and room.sender.pace.spare():  # messages take priority
+                    try:
+                        await room.sender.show_work(self._chat, printable(self._texts.get(self._last, "")).strip())
+                    except DeliveryError as error:  # it does no harm if the chat shows no draft
+                        await asyncio.sleep(error.wait)
+                await asyncio.sleep(GROWTH)
+                with contextlib.suppress(TimeoutError):
+                    async with asyncio.timeout(SHOWN - GROWTH):
+                        await self._grown.wait()
+        finally:
+            self._last = None  # an answer may be cut without an end, and must not show later

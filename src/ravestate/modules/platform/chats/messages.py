@@ -33,6 +33,7 @@ class Incoming:
         text: The words, the caption of a picture, the emoji of a reaction, or a command's name without a slash.
         file: The reference with which `Carrier.fetch` gets a picture or a voice note.
         group: Whether several people may be in the chat.
+        topic: The id of the message's topic, if the messenger divides the chat into topics; else empty.
         aliases: Other names of the sender and of the chat, for the setting `allow`.
     """
 
@@ -44,12 +45,13 @@ class Incoming:
     text: str = ""
     file: str = ""
     group: bool = False
+    topic: str = ""
     aliases: tuple[str, ...] = ()
 
 
-Sent = Literal["text", "picture", "voice", "edit", "reaction"]
+Sent = Literal["text", "picture", "voice", "edit", "delete", "reaction"]
 """The kinds of outgoing messages. A carrier gets a ``voice`` message with its sound, or as ``text`` if there is no
-sound."""
+sound. It gets an ``edit`` or a ``delete`` only after an incoming ``edit``."""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -61,7 +63,8 @@ class Outgoing:
         chat: The id of the chat.
         kind: The kind of the message.
         text: The words, the caption of a picture, or the emoji of a reaction.
-        to: The id of the message to edit, to react to or to reply to; empty if there is none.
+        to: The id of the message to edit, to delete, to react to or to reply to; empty if there is none.
+        topic: The topic of the message that this one answers; empty if it has none.
         data: The bytes of a picture, or of a voice note (Ogg with Opus).
         trace: The text that `Carrier.trace` returned before the first attempt; empty if there is none.
     """
@@ -71,6 +74,7 @@ class Outgoing:
     kind: Sent = "text"
     text: str = ""
     to: str = ""
+    topic: str = ""
     data: bytes = b""
     trace: str = ""
 
@@ -110,11 +114,13 @@ class Carrier(Protocol):
 
     longest: int
     """The maximum number of characters in a message; longer texts are sent as several messages."""
+    longest_caption: int
+    """The maximum number of characters below a picture or a voice note; the other words follow in more messages."""
     rate: float
     """The maximum number of messages per second, over all chats."""
 
     async def send(self, message: Outgoing, again: bool) -> str:
-        """Send a message, and return its id on the messenger.
+        """Send a message, and return its id on the messenger. For an ``edit``, this is the id for the next edit.
 
         Args:
             message: The message.

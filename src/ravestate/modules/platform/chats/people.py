@@ -21,8 +21,11 @@ PATIENCE = 30.0
 """The maximum number of seconds to wait for memory. After that, the conversation begins without it."""
 
 
-async def welcome(context: Context, platform: str, person: Person, log: logging.Logger) -> None:
-    """Add a person to the present users, with the name that memory has for their account."""
+async def welcome(context: Context, platform: str, person: Person, log: logging.Logger, origin: object) -> None:
+    """Add a person to the present users, with the name that memory has for their account.
+
+    The rules that this leads to, such as a greeting, get `origin` as ``ctx.origin``.
+    """
     name: str | None = person.name
     try:
         async with asyncio.timeout(PATIENCE):
@@ -34,7 +37,7 @@ async def welcome(context: Context, platform: str, person: Person, log: logging.
     except (RavestateError, TimeoutError) as error:
         log.warning("memory could not look up a person: %s", str(error) or "it took too long")
         name = None  # memory may know another person of the same name
-    join(context, key(platform, person), name)
+    join(context, key(platform, person), name, origin)
 
 
 async def recalled(context: Context) -> None:
@@ -46,15 +49,15 @@ async def recalled(context: Context) -> None:
                     await memory.together(lambda _: None)
 
 
-def join(context: Context, key: str, name: str | None) -> None:
+def join(context: Context, key: str, name: str | None, origin: object = None) -> None:
     """Add a user to the present users."""
-    context.put(interloc.users, {**context.read(interloc.users), key: name})
+    context.put(interloc.users, {**context.read(interloc.users), key: name}, origin=origin)
 
 
-def leave(context: Context, key: str) -> None:
+def leave(context: Context, key: str, origin: object = None) -> None:
     """Remove a user from the present users."""
     users = context.read(interloc.users)
-    context.put(interloc.users, {each: user for each, user in users.items() if each != key})
+    context.put(interloc.users, {each: user for each, user in users.items() if each != key}, origin=origin)
 
 
 def present(context: Context, platform: str, person: Person) -> bool:

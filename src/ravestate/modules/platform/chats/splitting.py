@@ -8,20 +8,23 @@ ENDS = (re.compile(r"\n\n"), re.compile(r"\n"), re.compile(r"(?<=[.!?…]) "), r
 """The places at which a text may be split, the best first."""
 
 
-def split(text: str, longest: int) -> list[str]:
+def split(text: str, longest: int, *, first: int | None = None) -> list[str]:
     """Split a text into parts of at most `longest` characters, if possible between paragraphs, sentences or words.
+
+    The first part has at most `first` characters, if this is given.
 
     Example:
         >>> split("One two. Three four.", 12)
         ['One two.', 'Three four.']
     """
     parts: list[str] = []
-    while len(text) > longest:
-        start = text[: longest + 1]
+    limit = first or longest
+    while len(text) > limit:
+        start = text[: limit + 1]
         cut = next(
-            (found[-1] for end in ENDS if (found := [m.end() for m in end.finditer(start) if m.end() > longest // 2])),
-            longest,
+            (found[-1] for end in ENDS if (found := [m.end() for m in end.finditer(start) if m.end() > limit // 2])),
+            limit,
         )
         parts.append(text[:cut].strip())
-        text = text[cut:]
+        text, limit = text[cut:], longest
     return [part for part in (*parts, text.strip()) if part]

@@ -31,6 +31,7 @@ CREATE TABLE IF NOT EXISTS inbox (
     tries INTEGER DEFAULT 0, answer TEXT DEFAULT '', data TEXT);
 CREATE INDEX IF NOT EXISTS of_chat ON inbox (chat, id);
 CREATE INDEX IF NOT EXISTS by_age ON inbox (at);
+CREATE INDEX IF NOT EXISTS not_done ON inbox (chat) WHERE data IS NOT NULL;
 CREATE TABLE IF NOT EXISTS outbox (
     n INTEGER PRIMARY KEY AUTOINCREMENT, chat TEXT, cause INTEGER, state TEXT DEFAULT 'queued', message TEXT, data BLOB);
 CREATE INDEX IF NOT EXISTS to_send ON outbox (chat, state);
@@ -58,7 +59,10 @@ class Item:
 
 @dataclass(frozen=True, slots=True)
 class Answer:
-    """A message that the agent wants to send, and the number of the incoming message that it answers, or None."""
+    """A message that the agent wants to send, and the number of the incoming message that it answers.
+
+    The number is None if the agent speaks on its own initiative.
+    """
 
     message: Outgoing
     cause: int | None = None
@@ -159,8 +163,7 @@ class Store:
         """Return the messages that are not done, in order. Drop messages that the agent has heard `TRIES` times."""
         with self._transaction():
             self._db.execute("UPDATE inbox SET data = NULL WHERE tries >= ?", (TRIES,))
-            done = "SELECT n FROM inbox WHERE data IS NULL"  # nothing is compared with the answers to these messages
-            self._db.execute(f"DELETE FROM outbox WHERE state = 'sent' AND cause IN ({done})")
+            self._tidy("chat")
             return [
                 Entry(n, _incoming(data, chat))
                 for n, data, chat in self._all("SELECT n, data, chat FROM inbox WHERE data IS NOT NULL ORDER BY n")
@@ -185,17 +188,17 @@ class Store:
             for entry in entries:
                 self._db.execute("UPDATE inbox SET tries = tries - 1 WHERE n = ?", (entry.n,))
 
-    def answer_to(self, edit: Entry) -> str | None:
-        """Return the id of the answer to the edited message; an empty text if there is no answer yet.
+    def answers_to(self, edit: Entry) -> list[str] | None:
+        """Return the ids of the answers to the edited message, which are texts; an empty list if there are none yet.
 
         If the edited message was not the last message of its chat, return None.
         """
         chat, id = edit.message.chat, edit.message.id
-        query = "SELECT id, answer FROM inbox WHERE chat = ? AND n < ? AND id IS NOT NULL ORDER BY n DESC LIMIT 20"
-        rows = self._all(query, chat, edit.n)
-        if not rows or rows[0][0] != id:
+        query = "SELECT id FROM inbox WHERE chat = ? AND n < ? AND id IS NOT NULL ORDER BY n DESC LIMIT 1"
+        if self._all(query, chat, edit.n) != [(id,)]:
             return None
-        return next((answer for found, answer in rows if found == id and answer), "")
+        query = "SELECT answer FROM inbox WHERE chat = ? AND id = ? AND n < ? ORDER BY n"
+        return [answer for (answers,) in self._all(query, chat, id, edit.n) for answer in answers.split("\n") if answer]
 
     # ------------------------------------------------------------------------------------ messages to deliver
 
@@ -209,8 +212,8 @@ class Store:
                 )
             for entry in done:
                 self._db.execute("UPDATE inbox SET data = NULL WHERE n = ?", (entry.n,))
-                self._db.execute("DELETE FROM outbox WHERE cause = ? AND state = 'sent'", (entry.n,))
                 message = entry.message
+                self._tidy("?", message.chat)
                 parting = message.kind == "command" and message.text in PARTING
                 change = (
                     "DELETE FROM people WHERE chat = ? AND id = ?"
@@ -222,6 +225,16 @@ class Store:
     def recorded(self, cause: int) -> list[Outgoing]:
         """Return the answers to a message that is not done, whether or not they are delivered."""
         return [_outgoing(*row) for row in self._all("SELECT message, data, chat FROM outbox WHERE cause = ?", cause)]
+
+    def alone(self, chat: str) -> list[Outgoing]:
+        """Return the messages that answer no message, but that the agent wrote while it had messages to answer."""
+        query = "SELECT message, data, chat FROM outbox WHERE cause IS NULL AND chat = ?"
+        return [_outgoing(*row) for row in self._all(query, chat)]
+
+    def _tidy(self, chat: str, *values: str) -> None:
+        """Delete the delivered messages with which nothing will be compared: no crash can make the agent repeat them."""
+        needed = "SELECT 1 FROM inbox i WHERE i.data IS NOT NULL AND i.chat = outbox.chat AND i.n = ifnull(cause, i.n)"
+        self._db.execute(f"DELETE FROM outbox WHERE chat = {chat} AND state = 'sent' AND NOT EXISTS ({needed})", values)
 
     def chats_to_send(self) -> list[str]:
         """Return the ids of the chats with undelivered messages."""
@@ -259,14 +272,19 @@ class Store:
     def sent(self, item: Item, id: str) -> None:
         """Note that a message has been delivered, and has this id on the messenger."""
         with self._transaction():
-            row = self._all("SELECT i.n, i.data FROM inbox i JOIN outbox o ON o.cause = i.n WHERE o.n = ?", item.n)
-            for cause, _ in row:
-                if item.message.kind in ("text", "voice", "edit"):
-                    self._db.execute("UPDATE inbox SET answer = ? WHERE n = ? AND answer = ''", (id, cause))
-            if row and row[0][1] is not None:  # after a crash, the chat compares new answers with this one
-                self._db.execute("UPDATE outbox SET state = 'sent' WHERE n = ?", (item.n,))
-            else:
-                self.drop(item)
+            message = item.message
+            cause = "(SELECT cause FROM outbox WHERE n = ?)"
+            if message.kind in ("text", "voice"):
+                self._db.execute(f"UPDATE inbox SET answer = answer || ? WHERE n = {cause}", (f"\n{id}", item.n))
+            elif message.kind in ("edit", "delete"):
+                new = [id] if message.kind == "edit" else []  # after a failed edit, the answer is a new message
+                same = f"chat = ? AND id = (SELECT id FROM inbox WHERE n = {cause})"
+                for n, answers in self._all(f"SELECT n, answer FROM inbox WHERE {same}", message.chat, item.n):
+                    lines = [each for line in answers.split("\n") for each in (new if line == message.to else [line])]
+                    self._db.execute("UPDATE inbox SET answer = ? WHERE n = ?", ("\n".join(lines), n))
+                message = replace(message, to=id)
+            self._db.execute("UPDATE outbox SET state = 'sent', message = ? WHERE n = ?", (_json(message), item.n))
+            self._tidy("?", message.chat)
 
     def drop(self, item: Item) -> None:
         """Delete an outgoing message."""

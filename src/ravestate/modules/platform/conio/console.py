@@ -15,7 +15,8 @@ from ravestate.folders import user_folder
 from ravestate.modules import rawio
 from ravestate.modules._text import printable, without_controls
 
-_FULL = (errno.ENOSPC, errno.EFBIG, errno.EDQUOT)
+FULL = (errno.ENOSPC, errno.EFBIG, errno.EDQUOT)
+"""The numbers of the errors which mean that there is no room for more output."""
 
 Ending = Literal["end of input", "interrupt", "closed"]
 
@@ -162,7 +163,7 @@ class Console:
             write()
         except (OSError, ValueError) as error:  # usually a broken pipe or a closed file
             self.ending = "closed"
-            if isinstance(error, OSError) and error.errno in _FULL:
+            if isinstance(error, OSError) and error.errno in FULL:
                 self.failure = PlatformError(f"conio: the agent's words cannot be written: {error.strerror}")
 
 

@@ -28,7 +28,7 @@ WRITING = 5000  # a room shows for this many milliseconds that the agent is writ
 class MatrixCarrier:
     """Sends messages from an account; see `Carrier`. A homeserver ignores a message whose id it knows."""
 
-    longest = 16_000  # the limit of an event is 64 kB
+    longest = longest_caption = 16_000  # the limit of an event is 64 kB
     rate = 50.0
 
     def __init__(self, client: AsyncClient) -> None:
@@ -43,13 +43,18 @@ class MatrixCarrier:
         return is_emoji(emoji)
 
     async def send(self, message: Outgoing, again: bool) -> str:
-        """Send a message, and return its id. A repeated message keeps its first id."""
+        """Send a message, and return its id. A repeated message keeps its first id, and so does an edited message."""
+        answer: Any
         with _delivery():
-            kind, content = await self._content(message)
-            answer: Any = await self._client.room_send(
-                message.chat, kind, content, tx_id=message.key, ignore_unverified_devices=True
-            )
-        return str(_checked(answer).event_id)
+            if message.kind == "delete":
+                answer = await self._client.room_redact(message.chat, message.to, tx_id=message.key)
+            else:
+                kind, content = await self._content(message)
+                answer = await self._client.room_send(
+                    message.chat, kind, content, tx_id=message.key, ignore_unverified_devices=True
+                )
+        id = str(_checked(answer).event_id)
+        return message.to if message.kind == "edit" else id
 
     async def _content(self, message: Outgoing) -> tuple[str, dict[str, Any]]:
         """Return the type and the content of the event for a message."""

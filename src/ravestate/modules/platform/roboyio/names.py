@@ -9,6 +9,7 @@ import pydantic
 
 import ravestate as rs
 from ravestate.modules import interloc, rawio, ros1, ros2
+from ravestate.settings import NameOrPath
 
 if TYPE_CHECKING:
     from .connection import Connection
@@ -28,7 +29,7 @@ class Settings(rs.Settings):
 
     link: Literal["bus", "ros1", "ros2"] = "bus"
     """``bus`` for the stand-in robot, ``ros1`` or ``ros2`` for a robot."""
-    robot: str = "roboy"
+    robot: NameOrPath = "roboy"
     """``roboy``, ``turtlebot``, or the path of a data file of your own."""
     bus: str = "127.0.0.1:7411"
     """The address of the stand-in's bus."""

@@ -101,12 +101,15 @@ class Goal:
         self.task = task
         task.add_done_callback(self._end)
 
-    def _end(self, task: asyncio.Task[Any]) -> None:
-        if self.result.done():
-            return
-        if reason := _failure(task):
+    def fail(self, reason: str) -> None:
+        """End the sender's wait with an error."""
+        if not self.result.done():
             self.result.set_exception(PlatformError(reason))
-        else:
+
+    def _end(self, task: asyncio.Task[Any]) -> None:
+        if reason := _failure(task):
+            self.fail(reason)
+        elif not self.result.done():
             self.result.set_result(task.result())
 
     def cancel(self) -> None:
@@ -310,9 +313,11 @@ class Declarations:
         )
         async def act(ctx: rs.RuleContext) -> rs.Resign | None:
             """Send the goal, and raise its feedback and its result."""
-            if (here := ctx[node]) is None:
-                return rs.Resign("there is no node")
             asked = ctx.payload(slot.requested)
+            if (here := ctx[node]) is None:
+                if isinstance(asked, Goal):
+                    asked.fail(f"{slot.name} has no node; in virtual time, there is none")
+                return rs.Resign("there is no node")
 
             async def send() -> Any:
                 await here.prepare()
@@ -370,7 +375,7 @@ async def perform(ctx: rs.RuleContext, slot: ActionSlot, goal: Any) -> Any:
         goal: The goal: any value that you could write to the slot.
 
     Raises:
-        PlatformError: The goal was refused, aborted or cancelled, or there is no server.
+        PlatformError: The goal was refused, aborted or cancelled, or there is no server. In virtual time, there is none.
     """
     sent = Goal(goal, asyncio.get_running_loop().create_future())
     ctx[slot] = sent

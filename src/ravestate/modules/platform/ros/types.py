@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import contextlib
 import hashlib
 import importlib
 import threading
@@ -262,10 +263,11 @@ def _checked(value: Any, base: str, path: str) -> Any:
     wanted: Any = str if base == "string" else bool if base == "bool" else float if base.startswith("float") else int
     if value is None:
         return wanted()
-    if wanted is float and isinstance(value, int):
-        return float(value)
     if hasattr(value, "item") and getattr(value, "ndim", 1) == 0:
         value = value.item()
+    if wanted is float and isinstance(value, int) and not isinstance(value, bool):
+        with contextlib.suppress(OverflowError):  # the number is too large; it is refused below
+            value = float(value)
     if not isinstance(value, wanted) or (wanted is not bool and isinstance(value, bool)):
         raise PlatformError(f"{path} takes {base}, not {value!r}")
     return value

@@ -6,6 +6,7 @@ import asyncio
 import contextlib
 from collections import defaultdict, deque
 from collections.abc import Generator
+from typing import Any
 
 import httpx
 from telegram import Bot, ReactionTypeEmoji, ReplyParameters
@@ -38,6 +39,7 @@ class TelegramCarrier:
     """
 
     longest: int = MessageLimit.MAX_TEXT_LENGTH
+    longest_caption: int = MessageLimit.CAPTION_LENGTH
 
     def __init__(self, bot: Bot, rate: float, drafts: bool) -> None:
         self._bot = bot
@@ -85,15 +87,22 @@ class TelegramCarrier:
             except BadRequest as error:
                 if "not modified" in error.message:
                     return int(message.to)
-        reply = None
+        if message.kind == "delete":
+            try:
+                await bot.delete_message(chat, int(message.to))
+            except BadRequest as error:
+                if "not found" not in error.message:
+                    raise
+            return int(message.to)
+        reply, topic = None, int(message.topic) if message.topic else None
         if message.to and message.kind != "edit":
             reply = ReplyParameters(int(message.to), allow_sending_without_reply=True)
-        caption = text[: MessageLimit.CAPTION_LENGTH]
+        place: dict[str, Any] = {"reply_parameters": reply, "message_thread_id": topic}
         if message.kind == "picture":
-            return (await bot.send_photo(chat, message.data, caption=caption, reply_parameters=reply)).message_id
+            return (await bot.send_photo(chat, message.data, caption=text, **place)).message_id
         if message.kind == "voice":
-            return (await bot.send_voice(chat, message.data, caption=caption, reply_parameters=reply)).message_id
-        return (await bot.send_message(chat, text, reply_parameters=reply)).message_id
+            return (await bot.send_voice(chat, message.data, caption=text, **place)).message_id
+        return (await bot.send_message(chat, text, **place)).message_id
 
     async def _find(self, message: Outgoing) -> str | None:
         """Return the id of a message that an earlier attempt has sent; None if no attempt has sent it."""

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterable
+from dataclasses import replace
 
 from telegram import Chat as TelegramChat
 from telegram import Message, MessageReactionUpdated, ReactionTypeEmoji, Update, User
@@ -42,7 +43,8 @@ def incoming(update: Update, me: User, names: Iterable[str]) -> Incoming | None:
     if content is None:
         return None
     kind, text, file = content
-    return _made(update, message.chat, message.message_id, kind, message.from_user, text, file)
+    made = _made(update, message.chat, message.message_id, kind, message.from_user, text, file)
+    return replace(made, topic=str(message.message_thread_id)) if message.is_topic_message else made
 
 
 def _content(message: Message, text: str) -> tuple[Said, str, str] | None:

@@ -5,20 +5,31 @@ from __future__ import annotations
 from collections.abc import Mapping
 from dataclasses import dataclass
 
+SLOWEST, MOST = 0.25, 4
+"""The least rate of a voice, and the greatest factor. A voice with other factors fails, or takes too long."""
+
 
 @dataclass(frozen=True, slots=True)
 class Prosody:
     """The manner of speech. Each value is a factor; 1 is the voice's normal manner.
 
     Attributes:
-        rate: The speed.
-        pitch: The height of the voice, if the backend can change it (espeak-ng).
-        range: The liveliness of the melody.
+        rate: The speed, from 0.25 to 4.
+        pitch: The height of the voice, from 0 to 4, if the backend can change it (espeak-ng).
+        range: The liveliness of the melody, from 0 to 4.
+
+    Raises:
+        ValueError: A value is out of its range. No voice could speak in such a manner.
     """
 
     rate: float = 1.0
     pitch: float = 1.0
     range: float = 1.0
+
+    def __post_init__(self) -> None:
+        for name, value, least in (("rate", self.rate, SLOWEST), ("pitch", self.pitch, 0), ("range", self.range, 0)):
+            if not least <= value <= MOST:
+                raise ValueError(f"the {name} of a Prosody must be from {least} to {MOST}, not {value}")
 
 
 FEELINGS: Mapping[str, Prosody] = {

@@ -23,6 +23,8 @@ def take(kind: str, config: Mapping[str, Any], python: str = sys.executable, *, 
             return ": apt-get install espeak-ng (or brew install espeak-ng)" if "not installed" in reason else ""
         if kind == "piper":
             return ". Set it up with `make voice`, or take another voice: --set voiceio.voice=espeak"
+        if "language" in reason:
+            return ". Set voiceio.language, or take another model: ravestate voice get base"
         return ". See what is missing: ravestate voice check"
 
     return process.take(Backend(CHILDREN / f"{kind}.py", "voiceio", kind, mend), config, python, shared=shared)

@@ -53,7 +53,6 @@ class Recogniser:
     """
 
     def __init__(self, settings: Settings) -> None:
-        self._language = settings.language.partition("-")[0].lower()  # Whisper does not know the region of `en-US`
         self._patience = settings.recogniser_timeout
         if settings.recogniser == "grammar":
             if find_spec("pocketsphinx") is None:
@@ -71,6 +70,7 @@ class Recogniser:
                 raise PlatformError("voiceio needs faster-whisper: pip install 'ravestate[voice]'")
             config = {
                 "path": str(whisper_model(settings.model)),
+                "language": settings.language.partition("-")[0].lower(),  # Whisper does not know the region of `en-US`
                 "threads": settings.threads or min(4, cores()),
                 "exact": False,
             }
@@ -115,7 +115,7 @@ class Recogniser:
         return Recognised(" ".join(one.text for _, one in found), confidence, found[-1][1].last)
 
     def _recognise(self, pcm: bytes, partial: bool, unwanted: Event | None) -> Recognised:
-        header = {"language": self._language, "partial": partial}
+        header = {"partial": partial}
         try:
             answer, _ = self._process.request(header, pcm, seconds=self._patience, unwanted=unwanted)
         except PlatformError:

@@ -266,22 +266,27 @@ async def end_growing(ctx: rs.RuleContext) -> rs.Resign | None:
     when=speech.max_age(None).detached(),
     reads=(conversation, prosody),
     writes=(agent_speaking, held, rawio.heard),
-    until=barge_in | utterance | rawio.hush | rs.shutdown,
+    until=barge_in | utterance | rawio.hush | conversation.changed | rs.shutdown,
 )
 async def voice_it(ctx: rs.RuleContext) -> rs.Resign | None:
     """Speak an utterance sentence by sentence. In the end, note the part of it that the user heard."""
     talk, saying, manner = ctx[conversation], ctx.payload(speech), ctx[prosody]
     if talk is None:
         return rs.Resign("the line is closed")
-    mouth = talk.mouth
+    mouth, failed = talk.mouth, False
     try:
         async with mouth.turn:
             try:
                 mouth.begin()
                 async for place, sentence in saying.sentences():
-                    if not (words := mouth.words(sentence)):
+                    if failed or not (words := mouth.words(sentence)):
                         continue
-                    spoken = await asyncio.to_thread(mouth.voice.speak, words, manner)
+                    try:
+                        spoken = await asyncio.to_thread(mouth.voice.speak, words, manner)
+                    except PlatformError as error:
+                        ctx.log.error("%s", error)
+                        failed = True  # from now on, the user only reads the text
+                        continue
                     mouth.queue(spoken, place)
                     if not mouth.speaking:
                         mouth.speaking, saying.start = True, ctx.now
@@ -293,15 +298,11 @@ async def voice_it(ctx: rs.RuleContext) -> rs.Resign | None:
                     await mouth.room()
                 await mouth.played_out()
                 saying.heard = saying.text.strip()
-            except PlatformError as error:
-                if not talk.closed:
-                    ctx.log.error("%s", error)
-                saying.start = saying.start or ctx.now
-                saying.heard = saying.text.strip()  # the voice failed, but the user may read the text
             except asyncio.CancelledError:
-                saying.heard = mouth.heard(saying.text)
+                saying.heard = saying.text.strip() if failed else mouth.heard(saying.text)
                 raise
             finally:
+                saying.start = saying.start or ctx.now
                 saying.end = mouth.silent_since or ctx.now
                 mouth.stop()
                 ctx[agent_speaking] = False

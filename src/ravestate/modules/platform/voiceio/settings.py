@@ -2,12 +2,21 @@
 
 from __future__ import annotations
 
+import re
 from pathlib import Path
 from typing import Annotated, Literal
 
-from pydantic import ConfigDict, Field
+from pydantic import AfterValidator, ConfigDict, Field
 
 import ravestate as rs
+from ravestate.settings import NameOrPath
+
+
+def _language(code: str) -> str:
+    if code and not re.fullmatch(r"[a-z]{2,3}(-[a-z0-9]+)*", code, re.IGNORECASE):
+        raise ValueError("write the code of a language, such as de or de-AT, or leave it empty to detect the language")
+    return code
+
 
 Seconds = Annotated[float, Field(ge=0, allow_inf_nan=False)]
 Share = Annotated[float, Field(ge=0, le=1)]
@@ -18,10 +27,10 @@ class Settings(rs.Settings):
 
     model_config = ConfigDict(protected_namespaces=())  # allow the field `model`
 
-    source: str = "default"
+    source: NameOrPath = "default"
     """The microphone: ``default``, a device's name, or a WAV file. A platform's line in ``rawio.sound`` takes
     priority."""
-    sink: str = "default"
+    sink: NameOrPath = "default"
     """The loudspeaker: ``default``, a device's name, or a WAV file; empty to drop the sound."""
     half_duplex: bool = False
     """Whether the agent is deaf while it speaks. This helps with a loud loudspeaker, but prevents interruptions."""
@@ -30,10 +39,10 @@ class Settings(rs.Settings):
 
     recogniser: Literal["whisper", "grammar"] = "whisper"
     """``whisper``: faster-whisper; ``grammar``: pocketsphinx, for a few commands."""
-    model: str = ""
+    model: NameOrPath = ""
     """For whisper, a model's name or folder, by default the best model on this machine. For grammar, a file in JSGF."""
-    language: str = "en"
-    """The user's language; empty to detect it in each utterance."""
+    language: Annotated[str, AfterValidator(_language)] = "en"
+    """The code of the user's language, such as ``de`` or ``de-AT``; empty to detect the language in each utterance."""
     threads: Annotated[int, Field(ge=0)] = 0
     """CPU threads of the recogniser; 0 takes up to four."""
     recogniser_timeout: Annotated[float, Field(gt=0, le=3600)] = 20.0
@@ -42,7 +51,7 @@ class Settings(rs.Settings):
     captions: Seconds = 1.0
     """The seconds between two captions (``rawio.hearing``) while the user speaks; 0 for no captions."""
 
-    voice: str = ""
+    voice: NameOrPath = ""
     """``espeak``, ``espeak:en-gb``, ``piper``, or a Piper voice's name or file; by default Piper if it is set up."""
     piper: Path | None = None
     """The Python interpreter of Piper's environment; by default the one that ``make voice`` installs."""

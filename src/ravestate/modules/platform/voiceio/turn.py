@@ -10,9 +10,8 @@ from importlib.resources import files
 from pathlib import Path
 from typing import Any, Literal
 
-import yaml
-
 from ravestate.modules.modality.rawio.line import IN_RATE
+from ravestate.yaml_text import load_yaml
 
 from .settings import Settings
 
@@ -179,8 +178,7 @@ def _bare(word: str) -> str:
 
 @lru_cache(maxsize=16)
 def _words(language: str) -> Mapping[str, frozenset[str]]:
-    book: Mapping[str, Mapping[str, Sequence[str]]] = yaml.safe_load(
-        (files(__package__ or "") / "words.yaml").read_text(encoding="utf-8")
-    )
-    found = book.get(language.partition("-")[0] or "en", book["en"])
+    file = files(__package__ or "") / "words.yaml"
+    book: Mapping[str, Mapping[str, Sequence[str]]] = load_yaml(file.read_text(encoding="utf-8"), file.name)
+    found = book.get(language.partition("-")[0].lower(), book["en"])
     return {role: frozenset(_bare(word) for word in words) for role, words in found.items()}

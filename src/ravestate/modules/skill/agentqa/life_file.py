@@ -168,7 +168,6 @@ class _Reader:
     ) -> Iterator[tuple[str, yaml.Node]]:
         if kind_of(node) != "mapping":
             raise self._fault(node, f"{meaning} this is a {kind_of(node)}")
-        seen: set[str] = set()
         for key, value in node.value:
             word = self._text(key)
             if allowed is not None and word not in allowed:
@@ -177,9 +176,6 @@ class _Reader:
                 )
             if allowed is None and not word.replace(" ", "_").replace("-", "_").isidentifier():
                 raise self._fault(key, f"{word!r} is not a name: letters, digits and _")
-            if word in seen:
-                raise self._fault(key, f"{word!r} is here a second time")
-            seen.add(word)
             yield word, value
 
     def _text(self, node: yaml.Node) -> str:

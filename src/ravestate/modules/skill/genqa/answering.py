@@ -19,7 +19,7 @@ from .index import Found, Index
 from .lexicon import lexicon, variants_of
 from .passages import LONGEST
 from .question import Parse, Question, as_question
-from .shipped import bring_up
+from .shipped import OWN, bring_up
 from .stems import Stems
 
 RETRIEVED = 20
@@ -74,6 +74,25 @@ class Answer:
     """All passages that were read, best first."""
     reason: str = ""
     """The reason why there is no text; empty if there is a text."""
+
+
+def together(answers: Sequence[Answer]) -> Answer:
+    """Return the answers to several questions of one utterance as one answer. It is as sure as the least sure one."""
+    if len(answers) == 1:
+        return answers[0]
+    texts = dict.fromkeys(
+        answer.text if answer.text.endswith((".", "!", "?")) else f"{answer.text}." for answer in answers
+    )
+    sources = dict.fromkeys(answer.source for answer in answers if answer.source not in ("", OWN))
+    known = next((answer.source for answer in answers if answer.source), "")
+    return Answer(
+        " ".join(answer.question for answer in answers),
+        " ".join(texts),
+        " and ".join(sources) or known,
+        answers[0].title,
+        min(answer.confidence for answer in answers),
+        tuple(candidate for answer in answers for candidate in answer.candidates),
+    )
 
 
 class Answerer:

@@ -21,8 +21,6 @@ from .reckoning import Unanswerable, dates_in, focused, reckon, scaled
 from .thread import Reading, Turn, readings, turn_of
 
 _log = logging.getLogger("ravestate.genqa")
-CLEAR = 0.9
-"""An answer of at least this confidence ends the search."""
 AGAIN = 5
 """The maximum number of words in an utterance that repeats a sum with another number: *and how about 300?*."""
 MOST = 8
@@ -59,7 +57,8 @@ def answer_in(
         if not answerer.states(new):  # the full search would find nothing either, but take longer
             reason = reason or NOT_STATED
             continue
-        seen = heard if reading.text == heard.text else replace(parse(reading.text), kind=heard.kind)
+        seen = heard if reading.text == heard.text else parse(reading.text)
+        seen = seen if seen.is_finite else replace(seen, kind=heard.kind)  # "capital of Spain?" has no kind of its own
         question = as_question(seen)
         follows = seen is not heard or bool(reading.about)
         question = replace(question, doubtful=question.doubtful or heard.kind is None, follows=follows)
@@ -75,7 +74,7 @@ def answer_in(
         answer = replace(answer, confidence=_shifted(answer.confidence, reading.prior))
         if best is None or answer.confidence > best[0].confidence:
             best = answer, seen
-        if best[0].confidence >= CLEAR:
+        if best[0].confidence >= settings.sure:  # an older question may fit as well: *and in Mali?*
             break
     if best is None:
         return Answer(heard.text, reason=reason), None

@@ -84,7 +84,7 @@ class Parse:
     @property
     def is_finite(self) -> bool:
         """Whether the question has a finite verb."""
-        return any(word.tag in FINITE for word in self.asked)
+        return _is_finite(self.asked)
 
 
 def parse(text: str) -> Parse:
@@ -100,15 +100,52 @@ def _parse(text: str, _loaded: bool) -> Parse:
 
 def parsed(tree: Tree, entities: Sequence[Entity], kind: QuestionWord | None) -> Parse:
     """Return the parse. Its question is the first sentence with a question word or mark, or else the last sentence."""
-    sentences = [tree.subtree(word) for word in tree.words if word.head == word.index and word.pos != "PUNCT"]
-    asking = [s for s in sentences if any(word.tag in WH for word in s) or s[-1].text.endswith("?")]
-    asked = (asking or sentences[-1:] or [[]])[0]
+    asked = (_asking(tree) or _sentences(tree)[-1:] or [[]])[0]
     root = next((word for word in asked if word.head == word.index), None)
     if root is not None:
         asked = _alone(tree, root, asked)
     while asked and (asked[0].pos in ("PUNCT", "INTJ", "SPACE") or asked[0].low in ("so", "well", "but")):
         asked = asked[1:]
     return Parse(tree, tuple(entities), kind, tuple(asked))
+
+
+def _asking(tree: Tree) -> list[list[Word]]:
+    """Return the sentences with a question word or mark."""
+    return [s for s in _sentences(tree) if any(word.tag in WH for word in s) or s[-1].text.endswith("?")]
+
+
+def _sentences(tree: Tree) -> list[list[Word]]:
+    return [tree.subtree(word) for word in tree.words if word.head == word.index and word.pos != "PUNCT"]
+
+
+def questions_in(heard: Parse) -> list[Parse]:
+    """Return the questions of an utterance, each with a parse of its own, or the utterance itself if it has only one.
+
+    Example:
+        >>> [one.text for one in questions_in(parse("What is the capital of Peru and who wrote Hamlet?"))]
+        ['What is the capital of Peru?', 'who wrote Hamlet?']
+    """
+    texts: list[str] = []
+    for sentence in _asking(heard.tree):
+        clause: list[Word] = []
+        for place, word in enumerate(sentence):
+            if word.pos == "CCONJ" and _is_finite(clause) and _opens(sentence[place + 1 :]):
+                texts.append(f"{heard.tree.phrase(clause).rstrip(' ,')}?")
+                clause = []
+            else:
+                clause.append(word)
+        texts.append(heard.tree.phrase(clause))
+    return [heard] if len(texts) < 2 else [parse(text) for text in texts]
+
+
+def _opens(words: Sequence[Word]) -> bool:
+    """Return whether words are a clause that begins with a question word: *who wrote Hamlet*, *in which year was it*."""
+    first = next((word for word in words if word.pos != "ADP"), None)
+    return first is not None and first.tag in WH and _is_finite(words)
+
+
+def _is_finite(words: Sequence[Word]) -> bool:
+    return any(word.tag in FINITE for word in words)
 
 
 def _alone(tree: Tree, root: Word, asked: list[Word]) -> list[Word]:

@@ -10,11 +10,12 @@ from ravestate.language.bundled import ModelMissing, warn_once
 from ravestate.language.loading import wait_for_prompt
 from ravestate.modules import nlp, rawio, verbaliser
 
+from .answering import Answer, together
 from .following import answer_in
 from .names import Settings, found, module, thread
 from .places import answerer_of
-from .question import not_asked, parsed
-from .thread import KEPT, REMEMBERED, overheard, refers
+from .question import not_asked, parsed, questions_in
+from .thread import KEPT, REMEMBERED, Turn, overheard, refers
 from .wording import intent_of, wording_rule
 
 
@@ -47,29 +48,41 @@ async def choose_wording(ctx: rs.RuleContext) -> None:
 # each statement for seconds. During these seconds, `idle` would not see the silence.
 @module.rule(when=nlp.text.changed & nlp.analysis.changed, reads=(thread, rawio.output), writes=thread, emits=found)
 def find(ctx: rs.RuleContext) -> rs.Resign | None:
-    """Search the documents for an answer to the utterance."""
+    """Search the documents for an answer to each question of the utterance."""
     settings: Settings = ctx.settings
     analysis = ctx.payload(nlp.analysis.changed)
     if analysis is None:
         return rs.Resign("nothing was analysed")
-    heard = parsed(analysis.tree, analysis.entities, analysis.question)
-    if reason := not_asked(heard, analysis):
-        return rs.Resign(reason)
     turns = tuple(turn for turn in ctx[thread] if ctx.now - turn.at <= REMEMBERED)
-    said, view = ctx[rawio.output], turns
-    if said and not (turns and turns[-1].answer in said) and any(refers(word, heard.asked) for word in heard.asked):
-        view = (*turns, overheard(said, ctx.now))
-    try:
-        answer, turn = answer_in(answerer_of(settings), heard, view, settings, ctx.now)
-    except ModelMissing as error:
-        warn_once(ctx.log, error)
-        return rs.Resign(str(error))
-    if not answer.text:
-        return rs.Resign(answer.reason)
-    if turn is None:
-        return rs.Resign(f"the documents have only {answer.text!r}, with a confidence of {answer.confidence:.2f}")
-    ctx[thread] = (*turns, turn)[-KEPT:]
-    ctx.emit(found, answer)
+    answers, new, reasons = list[Answer](), list[Turn](), list[str]()
+    for heard in questions_in(parsed(analysis.tree, analysis.entities, analysis.question)):
+        if reason := not_asked(heard, analysis):
+            reasons.append(reason)
+            continue
+        said, view = (
+            ctx[rawio.output],
+            () if reasons else turns,
+        )  # "who are you? and in Peru?" follows no earlier question
+        if new:
+            view = tuple(new)  # "who wrote Faust, and when was he born?"
+        elif said and not (view and view[-1].answer in said) and any(refers(word, heard.asked) for word in heard.asked):
+            view = (*view, overheard(said, ctx.now))
+        try:
+            answer, turn = answer_in(answerer_of(settings), heard, view, settings, ctx.now)
+        except ModelMissing as error:
+            warn_once(ctx.log, error)
+            return rs.Resign(str(error))
+        if turn is not None:
+            answers.append(answer)
+            new.append(turn)
+        elif answer.text:
+            reasons.append(f"the documents have only {answer.text!r}, with a confidence of {answer.confidence:.2f}")
+        else:
+            reasons.append(answer.reason)
+    if not answers:
+        return rs.Resign("; ".join(reasons))
+    ctx[thread] = (*turns, *new)[-KEPT:]
+    ctx.emit(found, together(answers))
     return None
 
 

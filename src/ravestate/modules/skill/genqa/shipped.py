@@ -9,6 +9,8 @@ from collections.abc import Iterator
 from importlib.resources import files
 from typing import Any
 
+from ravestate.yaml_text import load_yaml
+
 from .document import Document, Passage
 from .index import Index, IndexedFile
 
@@ -44,8 +46,6 @@ def bring_up(index: Index, *, wanted: bool = True) -> bool:
 
 def documents(factbook: bytes, *general: bytes) -> Iterator[Document]:
     """Yield the documents of the collection's files."""
-    import yaml
-
     for line in gzip.decompress(factbook).splitlines():
         entry: dict[str, Any] = json.loads(line)
         yield Document(
@@ -53,8 +53,7 @@ def documents(factbook: bytes, *general: bytes) -> Iterator[Document]:
             entry["source"],
             [Passage(text, f"{entry['also']} {asked}") for text, asked in entry["sentences"]],
         )
-    loader = getattr(yaml, "CSafeLoader", yaml.SafeLoader)
     for file in general:
-        said: dict[str, list[str]] = yaml.load(file, loader)  # the loader is safe, and the file is our own
+        said: dict[str, list[str]] = load_yaml(file.decode("utf-8"), "collection")
         for title, sentences in said.items():
             yield Document(title, OWN, [Passage(sentence) for sentence in sentences])

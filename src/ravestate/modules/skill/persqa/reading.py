@@ -36,9 +36,12 @@ PEOPLE = frozenset(topic.name for topic in TOPICS.values() if topic.kind in ("pe
 _UNUSUAL = re.compile(r"[^\w\s.,;:!?'’\"-]")
 """Characters that no word of English has. The network has not learnt them."""
 _PARTLY = re.compile(r"(?:n['’]t|\bnot) (?:just|only|merely|simply)\b|\bbecause\b", re.IGNORECASE)
+_JOINED = re.compile(r"[^.!?]*\band\b[^.!?]*", re.IGNORECASE)
+"""The words between two values that do not correct each other."""
 _SPEAKING = frozenset(("speak", "talk", "call", "be"))
 _NAMING = frozenset(("call", "name", "christen", "baptise", "dub", "say", "use", "prefer", "be"))
 """Verbs with which users say their own name: *Ada speaking*, *just say Kim*."""
+_REPORTING = frozenset(("say", "tell", "claim", "think", "believe"))
 _OTHERS = frozenset(("it", "him", "her", "them"))
 _PRONOUN = re.compile(r"\b(?:he|she|his|her|hers|him|its?)\b", re.IGNORECASE)
 
@@ -92,12 +95,13 @@ class Reader:
             and not self._is_contrasted(tag)
             and not (tag.negated and ((NOW - {"now"}) & self.words or _PARTLY.search(text)))  # "I'm not just a nurse"
             and (context or tag.text != text.strip(" .!?"))  # a bare word, such as "Hannover.", needs a question
-            and not (self._describes_work(tag) or self._is_over(tag) or self._is_anothers(tag))
+            and not (self._describes_work(tag) or self._is_over(tag) or self._is_hearsay(tag) or self._is_anothers(tag))
         )
 
     def facts(self) -> list[Fact]:
         """Return the facts that the user states or denies."""
         told: dict[str, tuple[str, ...]] = {}
+        clear: dict[str, int] = {}  # the ends of clear values: "I grew up in Cairo and studied physics in Delft"
         gone = self._ended()
         for tag in self.tags:
             topic = self._topic(tag)
@@ -106,7 +110,10 @@ class Reader:
                 known = self.known.get(topic, ())
                 fits = alike if TOPICS[topic].kind == "activity" else among
                 gone[topic] = gone.get(topic, ()) + (tuple(one for one in known if fits(one, (value,))) or (value,))
-            elif value:
+            elif value and (
+                tag.score >= CLEAR or not _JOINED.fullmatch(self.tree.text[clear.get(topic, tag.start) : tag.start])
+            ):
+                clear |= {topic: tag.end} if tag.score >= CLEAR and not TOPICS[topic].many else {}
                 for other, values in self.known.items():  # "Rex is a dog", if Rex was taken for a cat
                     both = {TOPICS[other].type, TOPICS[topic].type} == {"Animal"} and other != topic
                     gone |= {other: (value,)} if both and among(value, values) else {}
@@ -194,6 +201,15 @@ class Reader:
             ):
                 return not said.negated
         return False
+
+    def _is_hearsay(self, tag: Tag) -> bool:
+        """Return whether others say a value of the user: *people say I am from Spain*."""
+        if tag.label == NAME or not any(
+            one.verb in _REPORTING for one in self.seen.statements if one.subject.person != "I"
+        ):
+            return False
+        mine = (said for said in self.seen.statements if said.hearsay and said.subject.person == "I")
+        return any(tag.text in self.span(said) for said in mine)
 
     def _is_contrasted(self, tag: Tag) -> bool:
         """Return whether a value replaces a known one, so that the known one shows the topic: *not Leeds but Leipzig*."""

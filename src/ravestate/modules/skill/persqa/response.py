@@ -19,7 +19,7 @@ from .talk import CONFIRM, FORGET, LONGEST, TRIES, Talk
 from .told import Told
 from .topics import NAME, TOPICS, WORDS, Fact, in_order
 from .understanding import EVERYTHING, Meaning, is_idle
-from .wording import among, clauses, joined, learned, memorable, same, say, stating, without
+from .wording import alike, among, clauses, joined, learned, memorable, same, say, stating, without
 
 T = TypeVar("T")
 BRIEF = 9
@@ -312,7 +312,7 @@ def _asked(fact: Fact, user: Acquaintance, now: float) -> Response:
     if topic == "home" and not answers and known.get("origin"):  # the nearest fact that the agent knows
         answers = {"origin": known["origin"]}
     if answers:
-        right = all(any(among(asked, values) for values in answers.values()) for asked in fact.values)
+        right = all(any(_fits(asked, name, had) for name, had in answers.items()) for asked in fact.values)
         intent = "recall_name" if topic == NAME else "recall"
         if fact.values:
             intent = "confirm" if right else "deny"
@@ -324,6 +324,11 @@ def _asked(fact: Fact, user: Acquaintance, now: float) -> Response:
     if topic in user.talk.closed and topic not in known:
         return Response(say("recall_declined", known), user)
     return _ask(topic, "recall_stranger" if topic == NAME else "recall_unknown", user, now)
+
+
+def _fits(asked: str, topic: str, values: tuple[str, ...]) -> bool:
+    """Return whether a value is among the values of a topic. *Chess* stands for *playing chess*."""
+    return alike(asked, values) if TOPICS[topic].kind == "activity" else among(asked, values)
 
 
 # ------------------------------------------------------------------------------------ forgotten

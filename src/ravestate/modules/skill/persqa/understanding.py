@@ -245,7 +245,9 @@ class _Hearing:
         seen, topic, yesno = self.seen, self.topic, self.seen.yesno
         if self.fresh and "nothing" in self.acts and not self.sorry:
             return Meaning("none" if topic != NAME else "declined", topic=topic, aloud=not self.sum)
-        if not self.fresh or not yesno:
+        past = (one for one in seen.statements if one.verb == "be" and one.past and one.subject.person == "I")
+        excused = not {"no", "never"} & self.reader.words and any(not one.negated for one in past)
+        if not self.fresh or not yesno or excused:  # "I was away" says why the question waited, and answers nothing
             return None
         if yesno.unsure or yesno.no:
             declined = topic in (NAME, "home", "origin")

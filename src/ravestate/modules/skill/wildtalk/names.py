@@ -12,6 +12,7 @@ from pydantic import ConfigDict, Field, SecretStr
 import ravestate as rs
 from ravestate.language.chat import Backend, Message
 from ravestate.modules import interloc, nlp, rawio
+from ravestate.settings import NameOrPath
 
 from .history import EXAMPLES, PERSONA
 from .listening.state import Overheard, State
@@ -32,7 +33,7 @@ class Settings(rs.Settings):
     the format of Hugging Face; ``listen``: no model. ``auto`` chooses by what this machine has."""
     search: bool = True
     """Whether to look for servers on this machine's usual ports, and for models in the user's folders."""
-    model: str | None = None
+    model: NameOrPath | None = None
     """openai: the model's name on the server; gguf: the name (``ravestate model list``) or path of a file;
     transformers: a folder or a name on the hub, by default gpt2."""
     model_path: Path | None = None

@@ -28,6 +28,22 @@ class Event(ctypes.Structure):
     )
 
 
+class Voice(ctypes.Structure):
+    """The properties by which the library looks for a voice."""
+
+    _fields_ = (
+        ("name", ctypes.c_char_p),
+        ("languages", ctypes.c_char_p),
+        ("identifier", ctypes.c_char_p),
+        ("gender", ctypes.c_ubyte),
+        ("age", ctypes.c_ubyte),
+        ("variant", ctypes.c_ubyte),
+        ("xx1", ctypes.c_ubyte),
+        ("score", ctypes.c_int),
+        ("spare", ctypes.c_void_p),
+    )
+
+
 CALLBACK = ctypes.CFUNCTYPE(ctypes.c_int, ctypes.POINTER(ctypes.c_short), ctypes.c_int, ctypes.POINTER(Event))
 
 
@@ -41,8 +57,14 @@ def load(config: dict[str, Any]) -> Any:
     rate = library.espeak_Initialize(SYNCHRONOUS, 0, None, 1 << 15)
     if rate <= 0:
         raise OSError("espeak-ng has no data: install the package espeak-ng-data")
-    if library.espeak_SetVoiceByName(config["voice"].encode()) != 0:
-        raise ValueError(f"espeak-ng has no voice {config['voice']!r}: espeak-ng --voices lists them")
+    voice = config["voice"].encode()
+    # Some voices have another name than the language, and the voice of a region may be missing.
+    if library.espeak_SetVoiceByName(voice) and library.espeak_SetVoiceByProperties(
+        ctypes.byref(Voice(languages=voice))
+    ):
+        raise ValueError(
+            f"espeak-ng has no voice {config['voice']!r}: espeak-ng --voices lists the names for voiceio.voice"
+        )
     sound = bytearray()
     places: list[tuple[int, float]] = []
 

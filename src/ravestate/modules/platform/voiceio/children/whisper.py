@@ -28,7 +28,7 @@ REPEATED = 2.4
 
 
 def load(config: dict[str, Any]) -> Any:
-    """Load the model in the folder ``path``; return the function that recognises."""
+    """Load the model in the folder ``path`` for a ``language``; return the function that recognises."""
     import numpy as np
     from faster_whisper import WhisperModel
     from faster_whisper.audio import pad_or_trim
@@ -37,6 +37,11 @@ def load(config: dict[str, Any]) -> Any:
 
     model = WhisperModel(config["path"], device="auto", compute_type="default" if config["exact"] else "int8",
                          cpu_threads=config["threads"], local_files_only=True)  # fmt: skip
+    spoken = config["language"]
+    if not model.model.is_multilingual:
+        if spoken not in ("", "en"):
+            raise ValueError(f"the model {config['path']} knows only English, not the language {spoken!r}")
+        spoken = "en"
     suppressed: Any = get_suppressed_tokens  # the package's types are wrong
     tokenizers: dict[str, Tokenizer] = {}
 
@@ -47,16 +52,15 @@ def load(config: dict[str, Any]) -> Any:
             )
         return tokenizers[language]
 
-    def quick(sound: Any, language: str) -> dict[str, Any]:
+    def quick(sound: Any) -> dict[str, Any]:
         most = 16 + int(MOST * len(sound) / 16000)
         features = model.feature_extractor(sound, padding=int(TAIL * 16000))
         features = pad_or_trim(features, features.shape[-1] // 2 * 2)
         encoded = model.encode(features)
+        language = spoken
         if not language:
-            language = "en"
-            if model.model.is_multilingual:
-                whole = model.feature_extractor(sound[: 10 * 16000])
-                language = model.model.detect_language(model.encode(pad_or_trim(whole)))[0][0][0][2:-2]
+            whole = model.feature_extractor(sound[: 10 * 16000])
+            language = model.model.detect_language(model.encode(pad_or_trim(whole)))[0][0][0][2:-2]
         tokenizer = tokenizer_of(language)
         result = model.model.generate(
             encoded,
@@ -74,18 +78,18 @@ def load(config: dict[str, Any]) -> Any:
         words = [_bare("".join(parts[at:end])) for at, end in zip(begins, [*begins[1:], len(parts)], strict=True)]
         kept = without_repetition(words, at_limit=len(tokens) >= len(steps))
         count = begins[kept] if kept < len(begins) else len(tokens)
-        spoken = [number for number in range(kept) if words[number]]
+        written = [number for number in range(kept) if words[number]]
         text = tokenizer.decode(tokens[:count]).strip()
         return {
             "text": text if count == len(tokens) else text.rstrip(" ,-"),  # the comma was before the repetition
             "logprob": float(sum(steps[at][tokens[at]] for at in range(count))) / (count + 1),
             "no_speech": result.no_speech_prob,
-            "last": _plausible(np, tokenizer, steps[begins[spoken[-1]]]) if spoken else {},
+            "last": _plausible(np, tokenizer, steps[begins[written[-1]]]) if written else {},
         }
 
-    def whole(sound: Any, language: str) -> dict[str, Any]:
+    def whole(sound: Any) -> dict[str, Any]:
         found, _ = model.transcribe(
-            sound, language=language or (None if model.model.is_multilingual else "en"), beam_size=5,
+            sound, language=spoken or None, beam_size=5,
             condition_on_previous_text=False, without_timestamps=True,
         )  # fmt: skip
         segments = list(found)
@@ -102,15 +106,14 @@ def load(config: dict[str, Any]) -> Any:
 
     def handle(header: dict[str, Any], data: bytes) -> tuple[dict[str, Any], bytes]:
         sound = np.frombuffer(data, "<i2").astype(np.float32) / 32768
-        language = header["language"] if model.model.is_multilingual else "en"
-        found = quick(sound, language)
+        found = quick(sound)
         if not header["partial"] and (found["logprob"] < POOR or _repeats(found["text"])):
-            again = whole(sound, language)
+            again = whole(sound)
             found = again if again["logprob"] > found["logprob"] or _repeats(found["text"]) else found
         found["confidence"] = math.exp(min(0.0, found.pop("logprob")))
         return found, b""
 
-    handle({"language": "en", "partial": True}, bytes(32000))  # the first run is slow
+    handle({"partial": True}, bytes(32000))  # the first run is slow
     return handle
 
 
