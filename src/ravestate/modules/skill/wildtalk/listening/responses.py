@@ -15,13 +15,15 @@ from pathlib import Path
 
 from ravestate.language.network import Network
 
-from .material import Material
+from .material import PREFIX, Material
 from .moment import Line, Moment
 
 LEAST = 1.35
 """The minimum grade at which a reply is said. Below, a sign of listening is better."""
 SURE = 1.4
 """The minimum grade at which a reply may take precedence over the bank. See the tag `responsive` in hearing.py."""
+GENERAL = frozenset(("asks_fact", "asks_feeling", "asks_advice", "asks_favour", "tells_on", "answers", "nonsense"))
+"""Kinds of reply that say little. They never take precedence over the bank."""
 KIND = 0.3
 """The weight of the logarithm of the probability of a reply's kind, beside the grade of the reply."""
 LIGHT = ("glad", "funny")
@@ -100,7 +102,12 @@ def responses_to(phrases: Material, text: str, before: str = "", *, dark: bool) 
 
 def surely_suits(found: list[Response], least: float = SURE) -> bool:
     """Return whether the best reply takes precedence over the bank, because its grade is at least `least`."""
-    return bool(found) and found[0].grade >= least
+    return bool(found) and found[0].grade >= least and not is_general(found[0].kind)
+
+
+def is_general(kind: Moment) -> bool:
+    """Return whether the replies of a kind say little."""
+    return kind.name.removeprefix(PREFIX) in GENERAL
 
 
 def network() -> Grader:
