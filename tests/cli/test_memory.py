@@ -91,7 +91,7 @@ def test_the_action_load_restores_an_exported_memory(file: Path, folder: Path, c
     assert (code, out) == (0, "wrote all.json: 5 nodes\n")
     assert json.loads((folder / "all.json").read_text()) == document
     assert stat.S_IMODE((folder / "all.json").stat().st_mode) == 0o600
-    assert call(capsys, "memory", "--path", "other.lbug", "load", "all.json")[:2] == (0, "loaded 5\n")
+    assert call(capsys, "memory", "--path", "other.lbug", "load", "all.json")[:2] == (0, "loaded 5 nodes\n")
     assert json.loads(call(capsys, "memory", "--path", "other.lbug", "export")[1]) == document
     names = ["all.json", "memory.lbug", "memory.lbug.sum", "other.lbug", "other.lbug.sum"]
     assert sorted(path.name for path in folder.iterdir()) == names
@@ -127,12 +127,12 @@ def test_the_action_forget_removes_a_person_after_a_yes(
 ) -> None:
     monkeypatch.setattr(sys, "stdin", io.StringIO("y\n"))
     code, out, _ = call(capsys, "memory", "--path", str(file), "forget", "Ada")
-    assert code == 0 and out.endswith("forgot 2\n")
+    assert code == 0 and out.endswith("forgot 2 nodes\n")
     assert call(capsys, "memory", "--path", str(file), "forget", "Eve red", "-y")[0] == 2
     [eve] = [line for line in call(capsys, "memory", "--path", str(file), "list")[1].splitlines() if "Eve" in line]
     assert call(capsys, "memory", "--path", str(file), "forget", eve.split()[-1], "-y")[:2] == (
         0,
-        "forgot 1\n",
+        "forgot 1 node\n",
     )
     _, out, _ = call(capsys, "memory", "--path", str(file), "list", "--types")
     assert out.split() == ["Person", "2"]

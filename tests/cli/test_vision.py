@@ -47,7 +47,7 @@ def test_vision_who_names_a_face_only_between_vision_learn_and_vision_forget(
     code, _, errors = call(capsys, "vision", "learn", *memory, "Joe", str(photo("obama3")))
     assert code == 1 and "memory knows this face as Barack" in errors and "memory forget" in errors
     code, out, _ = call(capsys, "memory", *memory, "forget", "--yes", "Barack")
-    assert (code, out) == (0, "forgot 3\n")
+    assert (code, out) == (0, "forgot 3 nodes\n")
     code, out, _ = call(capsys, "vision", "who", *memory, str(photo("obama")))
     assert rows(out) == [("unknown", "-", "obama")]
 

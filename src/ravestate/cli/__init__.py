@@ -78,7 +78,7 @@ def main(argv: Sequence[str] | None = None) -> int:
     logging.basicConfig(level=level, format="%(levelname)s %(name)s: %(message)s")
     try:
         code: int = import_module(f"ravestate.cli.{options.command}").run(options)
-        sys.stdout.flush()  # here a failure gives a message
+        sys.stdout.flush()  # if this fails, the user gets a message
         return code
     except UsageError as error:
         print(f"ravestate {options.command}: {error}", file=sys.stderr)
@@ -103,9 +103,9 @@ def script() -> int:
     """Run the command ``ravestate``, and end the process.
 
     At its end, the interpreter stops the remaining threads in the middle of their work. If a thread is inside a C++
-    library, for instance to load a model, this aborts the process. So this function ends the process itself, after
-    everything else has been cleaned up. It waits for threads no longer than `LAST_GRACE`, which is enough for functions
-    that save something.
+    library, for instance to load a model, stopping it aborts the process. So this function ends the process itself,
+    after everything else has been cleaned up. It waits for threads no longer than `LAST_GRACE`, which is enough for
+    functions that save something.
     """
     import atexit
     import os
@@ -131,7 +131,7 @@ def script() -> int:
 
 
 def _open_streams() -> None:
-    """Make the standard streams usable: a closed stream is empty, and output shows ``?`` for what it cannot encode."""
+    """Open closed standard streams on the null device. Show ``?`` for a character that the output cannot encode."""
     import os
 
     for name, mode in (("stdin", "r"), ("stdout", "w"), ("stderr", "w")):
@@ -141,7 +141,7 @@ def _open_streams() -> None:
 
 
 def use_utf8() -> None:
-    """Read and write the standard streams as UTF-8, whatever the locale: a program reads what this command writes."""
+    """Read and write the standard streams as UTF-8, whatever the locale, because programs exchange data with them."""
     _reconfigure(sys.stdin, encoding="utf-8", errors="strict")
     _reconfigure(sys.stdout, encoding="utf-8", errors="replace")
 
@@ -157,7 +157,7 @@ class CommandParser(argparse.ArgumentParser):
     def __init__(self, *, allow_abbrev: bool = False, **options: Any) -> None:
         super().__init__(allow_abbrev=allow_abbrev, **options)
 
-    def parse_known_args(self, args: Any = None, namespace: Any = None) -> Any:  # type: ignore[override]  # which has overloads
+    def parse_known_args(self, args: Any = None, namespace: Any = None) -> Any:  # type: ignore[override]  # argparse has overloads
         """Parse the arguments. Refuse unknown ones here, because the main parser would show its own usage for them."""
         options, unknown = super().parse_known_args(args, namespace)
         many = [action.dest for action in self._get_positional_actions() if action.nargs in ("+", "*")]

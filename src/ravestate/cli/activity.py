@@ -45,7 +45,6 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
 
 
 def run(options: argparse.Namespace) -> int:
-    """Run the command, and return the exit code."""
     from ravestate.modules.modality import activity
     from ravestate.modules.modality.activity.files import folder_of
     from ravestate.settings import load_settings
@@ -118,8 +117,8 @@ def _teach(options: argparse.Namespace, folder: Path, settings: Any) -> int:
     unlike = sum(known.recognise(part).name != name for part in parts)
     if unlike:
         print(
-            f"ravestate activity: {unlike} of {len(parts)} demonstrations would not be recognised: film one person from the front "
-            f"who does nothing else. First forget these demonstrations: ravestate activity forget {shlex.quote(name)}",
+            f"ravestate activity: {unlike} of {len(parts)} demonstrations would not be recognised: film only one person, from the "
+            f"front, without other movements. First forget these demonstrations: ravestate activity forget {shlex.quote(name)}",
             file=sys.stderr,
         )
     return 0

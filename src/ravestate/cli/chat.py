@@ -12,7 +12,7 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
     complete.add_arguments(parser)
     complete.explain_memory(parser)
     parser.epilog = (
-        f"{parser.epilog}The terminal saves your lines to {complete.shown('state', 'history')}\n"
+        f"{parser.epilog}The console saves your lines to {complete.shown('state', 'history')}\n"
         "(to save none: --set conio.history=false).\n"
     )
 

@@ -98,7 +98,7 @@ def leave_out_absent(agent: AgentSpec, command: str) -> None:
     """
     _leave_out_absent(agent, command)
     needed = any("onnxruntime" in PACKAGES.get(module.name, ()) for module in with_required(agent.modules))
-    if needed and (line := absence()) and is_news(line):  # on a terminal, the log would go to a file
+    if needed and (line := absence()) and is_news(line):  # print it, because on a terminal the log goes to a file
         print(f"ravestate {command}: {line}", file=sys.stderr)
 
 
@@ -130,7 +130,7 @@ def _leave_out_absent(agent: AgentSpec, command: str) -> None:
 def choose_small_talk(agent: AgentSpec, command: str) -> str:
     """Choose the language model of `wildtalk`, print its name in one line, and set it in the agent's settings.
 
-    If there is no language model, return a sentence that says how to get one.
+    If there is no language model, return a sentence that says how to get one; otherwise, return an empty text.
     """
     if all(module.name != "wildtalk" for module in agent.modules):
         return ""

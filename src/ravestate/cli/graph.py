@@ -22,7 +22,7 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
     parser.description = (
         "Draw the Signal-Rule-Slot diagram of an agent; without a MODULE, draw the complete agent that `ravestate "
         "chat` runs. The diagram has the slots and signals that some rule uses. A folded module is one box, and one "
-        "arrow shows the strongest relation between two modules: writes, emits, condition, then reads."
+        "arrow shows the strongest relation between two modules (from strong to weak: writes, emits, condition, reads)."
     )
     parser.add_argument("-o", "--output", metavar="FILE", help="the file to write; standard output by default")
     parser.add_argument(

@@ -1,4 +1,4 @@
-"""``ravestate memory``: list, show, export, load, forget, and reset."""
+"""``ravestate memory``: list, show, export, load and forget what an agent knows, and remove its memory."""
 
 from __future__ import annotations
 
@@ -129,7 +129,7 @@ def _list(memory: Memory, options: argparse.Namespace) -> int:
     else:
         for node in nodes:
             print(f"{node.type:<16} {_name(node):<24} {node.id}")
-    print(f"{len(nodes)} nodes in {memory.place}", file=sys.stderr)
+    print(f"{_count(len(nodes))} in {memory.place}", file=sys.stderr)
     return 0
 
 
@@ -159,7 +159,7 @@ def _export(memory: Memory, options: argparse.Namespace) -> int:
         replace_file(target, text.encode(), mode=0o600)  # the document has personal data
     except OSError as error:
         raise UsageError(f"cannot write {target}: {error.strerror}") from None
-    print(f"wrote {target}: {len(document['nodes'])} nodes")
+    print(f"wrote {target}: {_count(len(document['nodes']))}")
     return 0
 
 
@@ -172,7 +172,7 @@ def _load(memory: Memory, options: argparse.Namespace) -> int:
         raise UsageError(f"cannot read {options.document}: {error.strerror}") from None
     except ValueError as error:
         raise UsageError(f"{options.document} is not JSON: {error}") from None
-    print(f"loaded {memory.load(document).result()}")
+    print(f"loaded {_count(memory.load(document).result())}")
     return 0
 
 
@@ -185,7 +185,7 @@ def _forget(memory: Memory, options: argparse.Namespace) -> int:
         if not _confirmed(f"Forget {'this' if len(going) == 1 else 'these'}, with all relations?"):
             print("nothing was forgotten")
             return 1
-    print(f"forgot {len(memory.forget(node).result())}")
+    print(f"forgot {_count(len(memory.forget(node).result()))}")
     return 0
 
 
@@ -241,6 +241,10 @@ def _chosen(memory: Memory, which: str) -> Node:
         ids = "".join(f"\n  {node.id}" for node in found)
         raise UsageError(f"{len(found)} nodes are called {which!r}: give the id of one{ids}")
     return found[0]
+
+
+def _count(number: int) -> str:
+    return f"{number} node{'' if number == 1 else 's'}"
 
 
 def _name(node: Node) -> str:

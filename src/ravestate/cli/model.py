@@ -112,7 +112,7 @@ def _remove(model: CatalogueModel) -> int:
     try:
         if model.part.exists():
             with alone(model):
-                pass  # no other process fetches the model
+                pass  # this fails if another process fetches the model
         for file in files:
             file.unlink(missing_ok=True)
     except OSError as error:

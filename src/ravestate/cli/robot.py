@@ -26,8 +26,10 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
         "--on", choices=("auto", "bus", "ros1", "ros2"), default="auto",
         help="where the robot's topics are: ROS 1, ROS 2, or the built-in bus; by default a ROS that runs here, else the bus",
     )  # fmt: skip
-    parser.add_argument("--robot", help="the robot: roboy, turtlebot, or a data file (default: roboyio.robot)")
-    parser.add_argument("--bus", help="the address of the bus (default: roboyio.bus)")
+    parser.add_argument(
+        "--robot", help="the robot: roboy, turtlebot, or a data file (default: the setting roboyio.robot)"
+    )
+    parser.add_argument("--bus", help="the address of the bus (default: the setting roboyio.bus)")
     parser.add_argument("--port", type=int, default=8421, help="the port of the page; 0 takes a free one")
     parser.add_argument("--browser", action=argparse.BooleanOptionalAction, default=None, help="open a browser")
 

@@ -47,7 +47,6 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
 
 
 def run(options: argparse.Namespace) -> int:
-    """Run the command, and return the exit code."""
     settings = _settings(options)
     if options.action == "check":
         return _check(settings["visionio"])
@@ -160,7 +159,7 @@ def _learn(options: argparse.Namespace, settings: dict[str, Any]) -> int:
                 raise UsageError(f"{file} shows a different person from {options.files[0]} (distance {far:.3f})")
             if face["quality"] < vision.quality:
                 print(
-                    f"ravestate vision: {file}: left out, the face is hard to see ({face['quality']:.2f})",
+                    f"ravestate vision: {file}: left out, because the face is hard to see (quality {face['quality']:.2f})",
                     file=sys.stderr,
                 )
                 continue

@@ -67,7 +67,10 @@ class Constraint(Condition):
         return replace(self, min_age_=_age(seconds, "min_age"))
 
     def max_age(self, seconds: Number | None) -> Constraint:
-        """Give up a spike when it is older than `seconds`. With ``None``, there is no limit. The default is 5 s."""
+        """Give up a spike when it is older than `seconds`. With ``None``, there is no limit. The default is 5 s.
+
+        A rule that is ready and waits for consent keeps its spikes, whatever their age (L14).
+        """
         return replace(self, max_age_=None if seconds is None else _age(seconds, "max_age"))
 
     def detached(self) -> Constraint:
@@ -78,7 +81,8 @@ class Constraint(Condition):
         """Accept a spike only if ``predicate(payload)`` is true. The predicate adds ln 2 to the utility (L9).
 
         Args:
-            predicate: A plain, fast function. The event loop calls it for each spike that might trigger the rule.
+            predicate: A plain, fast function. The event loop calls it for each spike that might trigger the rule. If
+                the function raises an exception, the predicate counts as false.
 
         Raises:
             DeclarationError: The predicate is not a function, or it is asynchronous.

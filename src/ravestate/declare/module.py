@@ -1,4 +1,4 @@
-"""A module: a value that holds the declarations of a designer (laws L1-L3). No registry, no side effects."""
+"""A module is a value that holds the declarations of a designer (laws L1-L3). There is no global registry."""
 
 from __future__ import annotations
 
@@ -37,7 +37,10 @@ class Module:
         requires: Modules whose signals and slots this module uses: `Module` values, or Python modules that contain one
             (``from ravestate.modules import rawio``).
         settings: A subclass of ``rs.Settings`` with the values that a user may configure.
-        serve: An async function, for platforms that serve many users. See `server`, which declares it afterwards.
+        serve: An async function, for platforms that serve many users. `server` declares it later.
+
+    Raises:
+        DeclarationError: The name is invalid, a value in `requires` is no module, or `settings` is no settings class.
 
     Example:
         >>> import ravestate as rs
@@ -97,6 +100,9 @@ class Module:
             name: The signal's name within the module.
             payload: The type of the payload; by default, the signal has no payload.
             options: See `SignalOptions`.
+
+        Raises:
+            DeclarationError: The name or an option is invalid.
         """
         qualified = self._qualified("signal", name, options)
         signal: Signal[Any] = Signal(qualified, payload, origin=place_of_call(), **options)
@@ -119,6 +125,9 @@ class Module:
             type: The value's type, e.g. ``str`` or ``str | Path``. Writing a value of another type fails; None is
                 allowed if it is the default. Types that ``isinstance`` cannot check are not enforced.
             options: See `SlotOptions`.
+
+        Raises:
+            DeclarationError: The name or an option is invalid.
         """
         qualified = self._qualified("slot", name, options)
         slot: Slot[Any] = Slot(qualified, default, type=type, origin=place_of_call(), **options)
@@ -162,8 +171,9 @@ class Module:
         background: bool = False,
         name: str | None = None,
     ) -> Callable[[Callable[P, R]], Rule[P, R]]:
-        """Turn a function into a rule. The function receives the rule context. An ``async def`` runs on the event
-        loop; a plain function runs in a thread.
+        """Return a decorator that turns a function into a rule. The function receives the rule context.
+
+        An ``async def`` runs on the event loop; a plain function runs in a thread.
 
         Args:
             when: The condition: signals, combined with ``&`` and ``|``.
@@ -172,11 +182,12 @@ class Module:
                 cause exclude each other (L10).
             emits: The signal or signals that the function may emit.
             weight: A factor above 0 that multiplies the utility (L9).
-            cooldown: After a run, the utility takes this many seconds to recover from 0 (L9).
-            patience: Other rules wait this many seconds for this rule to become ready (L16). The default is the
-                context's patience.
-            until: A condition that interrupts a run (L21).
-            timeout: The maximum duration of a run in seconds (L18); no limit by default.
+            cooldown: When the rule has fired, its utility takes this many seconds to recover from 0 (L9). A run that
+                resigned does not count.
+            patience: Other rules wait at most this many seconds for an input, or another cause's spike, that this rule
+                still lacks (L16). The default is the context's patience.
+            until: A condition that interrupts a run when new spikes meet it (L21).
+            timeout: The maximum duration of a run in seconds, after which it fails (L18); no limit by default.
             detached: Whether the rule's effects begin new causal groups (L19).
             background: If true, the rule never makes ``rs.activity`` true (L22).
             name: The rule's name within the module; by default the function's name.

@@ -8,7 +8,7 @@ from ravestate.errors import RavestateError
 class Resign(RavestateError):
     """An outcome: the rule does not apply after all, and the next best rule may run instead.
 
-    Write ``return rs.Resign("reason")`` or ``raise rs.Resign("reason")``, before the rule writes a slot.
+    Write ``return rs.Resign("reason")`` or ``raise rs.Resign("reason")``. To resign after writing a slot is an error.
     """
 
     def __init__(self, reason: str = "") -> None:

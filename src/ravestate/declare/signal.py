@@ -38,8 +38,8 @@ class Signal(Condition, Generic[T]):
 
     Attributes:
         name: The qualified name, ``module:name``.
-        payload: The payload's type; None if there is no payload. It is also None for the signal of a slot, whose
-            payload has the slot's type.
+        payload: The payload's type; None if there is no payload. It is also None for the signals of a slot; their
+            payloads depend on the kind of slot: see `Slot`, `Flag` and `Collection`.
         input, keep, limit: As for `SignalOptions`.
         origin: The place of the declaration, ``file:line``.
     """

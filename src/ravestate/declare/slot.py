@@ -75,7 +75,7 @@ class Slot(Generic[T]):
             setattr(self, what, signal)
 
     def check(self, value: object, writer: str) -> None:
-        """Raise a `RuleError` that names the `writer` if the value is not of the slot's type."""
+        """If the value is not of the slot's type, raise a `RuleError` that names the `writer`."""
         if self.type is None or isinstance(value, self.type) or (value is None and self.default is None):
             return
         takes = getattr(self.type, "__name__", str(self.type))
@@ -84,8 +84,13 @@ class Slot(Generic[T]):
         )
 
     def holds(self, predicate: Predicate) -> Holds:
-        """Return a condition: a rule starts only while ``predicate(value)`` is true. It adds ln 2 to the utility
-        (L9)."""
+        """Return a condition: a rule starts only while ``predicate(value)`` is true.
+
+        The predicate is a plain, fast function of the slot's value. It adds ln 2 to the rule's utility (L9).
+
+        Raises:
+            DeclarationError: The predicate is not a function, or it is asynchronous.
+        """
         return Holds(self, checked_predicate(predicate, f"{self.name}.holds", "value"))
 
     def __getattr__(self, attribute: str) -> NoReturn:

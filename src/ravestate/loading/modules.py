@@ -1,4 +1,4 @@
-"""Finding a module by the name that a user types."""
+"""Find a module by the name that a user types."""
 
 from __future__ import annotations
 
@@ -16,7 +16,7 @@ from ravestate.errors import DeclarationError, RavestateError, UsageError, neare
 from ravestate.modules import BUILT_IN
 
 LIBRARIES = sys.stdlib_module_names | {"ravestate", "pydantic", "yaml"}
-"""Python modules that every agent may import. A user's file of the same name would take their place."""
+"""Python modules that every agent may import. A user's file with one of these names would replace the module."""
 
 
 def load_module(name: str, folder: Path = Path()) -> Module:

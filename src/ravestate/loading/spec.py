@@ -29,6 +29,7 @@ NUMBERS: tuple[tuple[str, Callable[[Any], bool], str], ...] = (
 )
 """The numbers in an agent file: each key, its test, and a description of a valid value."""
 VARIABLE = re.compile(r"\$\{([A-Za-z_][A-Za-z0-9_]*)(?::-([^}]*))?\}")
+"""A variable of the environment in a setting: ``${NAME}`` or ``${NAME:-default}``."""
 
 
 @dataclass(slots=True)
@@ -39,8 +40,7 @@ class AgentSpec:
         modules: The modules, in order.
         settings: Name of a module → key → value. Only settings from files and options are here.
         seed: The seed of random choices; `None` for a new seed in each run.
-        patience: A rule gives up if it is still not ready after another rule has waited for it for this many seconds
-            (law L16).
+        patience: The patience of rules that declare none, in seconds: see `Module.rule` (law L16).
         faults: A message for each mistake so far.
     """
 
@@ -97,9 +97,13 @@ class AgentSpec:
         return [(name, path.parent) for name in cast("list[str]", modules)]
 
     def load(self, names: Iterable[tuple[str, Path]]) -> None:
-        """Load the modules with these names, then take the settings from files, whose meaning depends on the modules.
+        """Load modules. Then take over the settings from files; the modules say how to read them.
 
-        Each name comes with a folder. A relative path of a module refers to it.
+        Args:
+            names: The names of modules, each with the folder to which a relative path refers.
+
+        Raises:
+            UsageError: A module cannot be loaded. If there are `faults` already, the message becomes one of them.
         """
         for name, folder in names:
             try:
@@ -121,7 +125,7 @@ class AgentSpec:
         self._read.clear()
 
     def set(self, text: str) -> None:
-        """Take a setting from the text ``module.key=value``, and add mistakes to `faults`. `check` checks the value."""
+        """Take a setting from the text ``module.key=value``, but do not check its value. Add mistakes to `faults`."""
         name, equals, said = text.partition("=")
         module, dot, key = name.strip().partition(".")
         if not equals or not dot or not module or not key:

@@ -28,7 +28,7 @@ LOADING = 120.0
 """A model may take this many seconds to load."""
 
 LINGER = 60.0
-"""A process that no code uses stays loaded for this many seconds, if the last call of `drop` had `linger`."""
+"""After its last release, a process stays loaded for this many seconds, if that call of `drop` had ``linger=True``."""
 
 SERVER = Path(__file__).with_name("serve.py")
 
@@ -59,7 +59,7 @@ class ModelProcess:
     """The process of one model, which answers one request after another. All methods block and are thread-safe."""
 
     def __init__(self, backend: Backend, config: Mapping[str, Any], python: str = sys.executable) -> None:
-        """Make the object. The process starts later.
+        """Make the object. The process starts at the first request, or at a call of `start`.
 
         Args:
             backend: The program.
@@ -104,10 +104,11 @@ class ModelProcess:
         seconds: float,
         unwanted: threading.Event | None = None,
     ) -> tuple[dict[str, Any], bytes]:
-        """Send a request, and return its answer. The first request loads the model.
+        """Send a request, and return the answer: its header and its bytes. The first request loads the model.
 
         Args:
-            header, data: The request.
+            header: The request, as data for JSON.
+            data: Bytes that belong to the request, such as a picture or a sound.
             seconds: The maximum time for the answer. The time for loading the model does not count.
             unwanted: An event that another thread sets if the answer is no longer needed. If the request is then still
                 waiting for earlier requests, it is dropped.
@@ -128,7 +129,7 @@ class ModelProcess:
         return answer, sound
 
     def close(self) -> None:
-        """Kill the process, which has nothing to save."""
+        """Kill the process, which has nothing to save. Later requests fail."""
         self._closed = True
         if (process := self._process) is not None:
             process.kill()  # an open request then fails, because its pipe ends
@@ -224,13 +225,13 @@ _unshared = itertools.count()
 def take(
     backend: Backend, config: Mapping[str, Any], python: str = sys.executable, *, shared: bool = True
 ) -> ModelProcess:
-    """Return the process for a backend and a configuration, and count one more user. Pair each call with `drop`.
+    """Return the process for a backend and a configuration. Pair each call with a call of `drop`.
 
     The process might not have started yet.
 
     Args:
         backend, config, python: As for `ModelProcess`.
-        shared: Whether all users of the same configuration share a process. If not, this user gets a new one.
+        shared: Whether all callers with the same configuration share a process. If not, this caller gets a new one.
     """
     with _sharing:
         key = json.dumps(
@@ -246,17 +247,17 @@ def take(
 
 
 def is_shared(process: ModelProcess) -> bool:
-    """Return whether a process has more than one user."""
+    """Return whether several callers of `take` share a process now."""
     with _sharing:
         return any(known is process and _users[key] > 1 for key, known in _processes.items())
 
 
 def drop(process: ModelProcess, *, linger: bool = False) -> None:
-    """Note that one user of `process` has left. A process without users ends.
+    """Release a process that `take` has returned. The process ends after its last release.
 
     Args:
         process: The process.
-        linger: Whether the process ends only after `LINGER` seconds without a user, because a user is likely to return.
+        linger: Whether the process ends only `LINGER` seconds later, because a caller is likely to take it again.
     """
     with _sharing:
         key = next((key for key, known in _processes.items() if known is process), None)
@@ -275,10 +276,10 @@ def drop(process: ModelProcess, *, linger: bool = False) -> None:
 
 
 def _end_unused(key: str) -> None:
-    """End a process that has had no user for `LINGER` seconds."""
+    """End a process that no caller has taken again for `LINGER` seconds."""
     with _sharing:
         if _timers.get(key) is not threading.current_thread():
-            return  # a new user has taken the process at the last moment
+            return  # a caller has taken the process again at the last moment
         del _timers[key], _users[key]
         process = _processes.pop(key)
     process.close()

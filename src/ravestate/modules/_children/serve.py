@@ -3,8 +3,10 @@
 `process` runs this file. The argument is a backend's program: ``python -P serve.py .../whisper.py``. The program is a
 file, or a folder with ``__init__.py`` and the files that it imports (``from . import ...``).
 
-The first request is the backend's configuration. Each request and each answer is a line of JSON, followed by as many
-bytes as the line's ``size`` says. The process ends when standard input ends, so it also ends when its parent ends.
+Each request and each answer is a line of JSON, followed by as many bytes as the line's ``size`` says. The first request
+is the backend's configuration, and its answer is ``{"ready": true}``. If a request fails, its answer has the reason in
+``error``; if the first request fails, the process ends. The process also ends when standard input ends, for instance
+when its parent ends.
 """
 
 from __future__ import annotations

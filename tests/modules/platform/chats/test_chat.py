@@ -206,7 +206,7 @@ async def test_an_agent_that_ends_while_the_file_cannot_be_written_answers_after
         connections[-1].execute("PRAGMA query_only=ON")
     assert post.sent == []
     assert [record.levelname for record in caplog.records if record.exc_info] == []
-    assert "the next start answers again" in caplog.text
+    assert "the agent answers again after its next start" in caplog.text
     async with room(tmp_path, post, slow) as opened:
         assert await post.said(1) == ["a: one"]
         await past(10.0)

@@ -33,8 +33,8 @@ bored = module.signal("bored")
 """There was no activity for ``bored_after`` seconds. Each silence raises this once, including the one after startup.
 
 A rule that speaks ends the silence. If the user ignores ``remarks`` remarks in a row, asks for quiet or says goodbye,
-the signal is not raised until the user speaks again. After words of sorrow, the signal is not raised for twelve
-utterances.
+the signal is not raised until the user speaks again. After words of sorrow, the signal is not raised until the user
+has spoken twelve more times.
 """
 
 hushed = module.signal("hushed")

@@ -84,7 +84,7 @@ async def notice_delay(ctx: rs.RuleContext) -> None:
 async def notice_dismissal(ctx: rs.RuleContext) -> None:
     """Note whether the user asks for quiet, says goodbye or is sad. If the user asks for quiet, emit `hushed`.
 
-    The encoder may take a few milliseconds, so it runs in a thread. The silence begins after this rule has ended.
+    The sentence model may take a few milliseconds, so it runs in a thread. The silence begins when this rule ends.
     """
     meant, felt = await asyncio.to_thread(_understood, ctx.payload(rawio.input.changed))
     ctx[dismissed] = bool(meant & {"quiet", "farewell"})

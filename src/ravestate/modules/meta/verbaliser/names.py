@@ -11,7 +11,7 @@ from .intents import Intent
 
 
 class Settings(rs.Settings):
-    """The language of the agent, and the user's phrases for it."""
+    """The language of the agent, and your own files of phrases."""
 
     language: str = "en"
     """The agent's language, e.g. ``de`` or ``de-AT``. An intent without phrases in this language is said in English."""

@@ -114,6 +114,9 @@ class PhraseBook:
         """Return the phrases for `intent` in `language`, by default the language of the book.
 
         If there are none, return the phrases in the first fallback language that has some.
+
+        Raises:
+            RuleError: There is no such intent, or none of these languages has a phrase for it.
         """
         languages = self._phrases.get(intent)
         if languages is None:

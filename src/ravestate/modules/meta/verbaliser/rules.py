@@ -34,7 +34,7 @@ async def verbalise(ctx: rs.RuleContext) -> None:
 
 
 def as_intent(value: object) -> Intent:
-    """Return the slot's value as an `Intent`. The value is an `Intent` or the name of an intent."""
+    """Return a value of the slot `intent` as an `Intent`. Refuse a value that is neither an `Intent` nor a name."""
     if isinstance(value, Intent):
         return value
     if isinstance(value, str) and value:
@@ -47,7 +47,7 @@ def as_intent(value: object) -> Intent:
 
 @lru_cache(maxsize=256)
 def phrase_book(package: str | None, own: tuple[Path, ...], language: str) -> PhraseBook:
-    """Return a book of the built-in phrases, the phrases of `package`, and the user's files `own` (absolute paths).
+    """Return a book of the built-in phrases, the phrases of `package`, and the files `own` (absolute paths).
 
     If several of these have phrases for the same intent, the later ones in this list replace the earlier ones. All
     contexts of the process share the book, so the process reads each file only once.

@@ -13,12 +13,12 @@ if TYPE_CHECKING:
 
 LEFT_WRIST, RIGHT_WRIST = 3, 4
 TRACKS = 12
-"""The number of coordinates whose pairwise correlations are features. These are the wrists, the height and depth of the
+"""The number of coordinates whose pairwise correlations are features: those of the wrists, the height and depth of the
 knees, the depth of the torso, and the height of the shoulders."""
 
 
 def features_of(skeleton: Skeleton) -> NDArray[np.float64]:
-    """Return the features of a movement. A feature is NaN if the joints that it needs are not visible.
+    """Return the `COUNT` features of a movement. A feature is NaN if the joints that it needs are not visible.
 
     The features are the mean place of each joint, the size of its movement, and the correlations between pairs of
     coordinates. Next come the rotations of the wrists, the distance between them, and their distances from the face.

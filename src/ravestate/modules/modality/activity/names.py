@@ -42,14 +42,14 @@ class Lesson:
 
 
 class Settings(rs.Settings):
-    """The settings of activity: the recogniser's pace, and the folder of taught movements."""
+    """The settings of activity: the recogniser's pace, and the folder of taught activities."""
 
     window: Annotated[float, Field(ge=1.0, le=10.0)] = 3.0
     """The length of the movement for one recognition, in seconds."""
     step: Annotated[float, Field(gt=0)] = 0.5
     """The seconds from one recognition to the next."""
     folder: Path | None = None
-    """The folder of taught movements; by default ``activities`` in your data folder."""
+    """The folder of taught activities; by default ``activities`` in your data folder."""
 
 
 module = rs.Module("activity", settings=Settings)

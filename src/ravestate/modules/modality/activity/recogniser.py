@@ -1,9 +1,9 @@
 """The recogniser: it compares the features of a movement with the features of known activities.
 
-Each activity is a Gaussian with its own mean and deviation for each feature. All activities share one correlation of
-features. A movement belongs to the activity that makes it most probable. The movement is unknown if it is too far from
-that activity's mean, or if one of the starter set's *other* movements is more probable. The recogniser tries the
-movement and its mirror image.
+Each activity is a Gaussian with its own mean and standard deviation for each feature. All activities share one
+correlation of features. A movement belongs to the activity that makes it most probable. The movement is unknown if it
+is too far from that activity's mean, or if one of the starter set's *other* movements is more probable. The recogniser
+tries the movement and its mirror image.
 
 A new activity needs few demonstrations, because they determine only its mean. Its deviations are those of an average
 activity.
@@ -33,7 +33,7 @@ RIDGE = 0.05
 SPREAD = 0.8
 """The deviations of a taught activity, relative to those of an average activity."""
 FAVOUR = 0.5
-"""The cost of a taught activity is lowered by this, to give the activity a head start (see `_compared`)."""
+"""The cost of a taught activity is lowered by this, so that a close comparison favours it (see `_compared`)."""
 LIMIT = 4.0
 """A movement up to this distance from a taught activity may belong to it (mean squared deviation of the features)."""
 REMEMBERED = 64
@@ -100,7 +100,7 @@ class Starter:
 
     @classmethod
     def learn(cls, examples: Mapping[str, Sequence[NDArray[Any]]], others: Sequence[Sequence[NDArray[Any]]]) -> Starter:
-        """Return a starter set with neutral `limit` and `heat`.
+        """Return a starter set with the `limit` and the `heat` 1.0.
 
         Args:
             examples: The features of the performances of each activity, by the activity's name.

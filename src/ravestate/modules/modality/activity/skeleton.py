@@ -66,9 +66,9 @@ def skeleton_of(poses: Sequence[Pose]) -> Skeleton | None:
     visible.
 
     The result does not depend on how far away the camera is, or on the side from which it looks. The camera must be
-    upright and level. The origin moves with the body, and the
-    unit is the length of the torso. The function turns the body about the vertical axis until its shoulders (and
-    its hips, if visible) are, on average, parallel to the picture.
+    upright and level. The origin moves with the body, and the unit is the length of the torso. The function turns the
+    body about the vertical axis. After that, its shoulders (and its hips, if visible) are, on average, parallel to the
+    picture.
 
     Args:
         poses: The poses of one body, in the order of their times.

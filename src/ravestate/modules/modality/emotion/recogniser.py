@@ -34,6 +34,7 @@ CLEAR = 0.65
 """The minimum confidence of a class of `SPOILED`. It is high, because a smile at neutral words annoys users more than
 no smile at good news."""
 
+# Emoji and smileys in the user's words, and the agent's feeling for them.
 PICTURES: tuple[tuple[Feeling, re.Pattern[str]], ...] = (
     ("affectionate", re.compile("[❤💕💖💗💓💞💘💝💙💚💛💜🧡🤍🥰😍😘😚🤗🫂]|<3")),
     ("surprised", re.compile(r"[😮😲😯😱🤯😳]|(?<!\w)[:=]-?[oO]\b")),

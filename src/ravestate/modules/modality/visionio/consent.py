@@ -1,4 +1,4 @@
-"""The rules of consent. They ask for leave to remember a face, store the face after a yes, and forget it on request."""
+"""Rules that ask people for permission to remember their faces, store a face after a yes, and forget it on request."""
 
 from __future__ import annotations
 
@@ -92,7 +92,7 @@ async def listen(ctx: rs.RuleContext) -> None:
         ctx.emit(withdrawn if wish == "forget" else agreed, front.key if front else "")
     elif question is not None and answer and not answer.unsure:
         if not answer.no and not begins_with_yes(text):
-            return  # "I love it here" is no consent
+            return  # "I love it here" is no permission
         ctx.emit(refused if answer.no else agreed, question.key)
     else:
         return

@@ -84,7 +84,7 @@ class Eye:
     def look_now(
         self, want: Sequence[str], request: Mapping[str, Any], *, at: float = 0.0, frame: Frame | None = None
     ) -> dict[str, Any] | None:
-        """Look at a picture as `look` does, but block the thread."""
+        """Do the same as `look`, but block the thread until the answer comes."""
         header: dict[str, Any] = {"do": "look", "stream": self._stream, "want": list(want), "at": at, **request}
         if frame is not None and frame.shape is not None:
             header |= {"shape": list(frame.shape), "encoding": frame.encoding, "step": frame.step}

@@ -51,7 +51,7 @@ class Settings(rs.Settings):
     """The number of vectors that memory keeps for each person."""
     ask: bool = True
     """Whether the agent asks people who give their names if it may remember their faces. It keeps a face only after a
-    yes."""
+    yes, or after *remember my face*."""
 
 
 module = rs.Module("visionio", requires=[rawio, interloc, ontology, verbaliser, idle, activity], settings=Settings)
@@ -66,7 +66,8 @@ looked: rs.Signal[Look] = module.signal("looked", payload=Look, input=True, keep
 """The agent has looked at a picture, with or without faces."""
 
 pose: rs.Signal[Pose] = module.signal("pose", payload=Pose, input=True, limit=1000)
-"""The body in a picture. The signal is raised for each picture if a rule of the agent listens to it."""
+"""The body in a picture. The signal is raised for each picture if a rule of the agent listens to this signal or to
+`activity.recognised`."""
 
 camera: rs.Slot[Frames | None] = module.slot("camera", None, type=cast("type[Frames]", object), input=True)
 """The camera into which a platform puts pictures, for example a web page or a robot; None if there is none."""

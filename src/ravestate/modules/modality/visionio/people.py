@@ -20,7 +20,7 @@ MERGE = 0.45
 """Two faces up to this distance surely belong to one person. If two people have the same name and such faces, memory
 merges them."""
 MARGIN = 0.05
-"""The agent recognises nobody if two people are within the threshold, and their distances differ by less than this."""
+"""If the second nearest person is at most this much farther away than the nearest one, the agent recognises nobody."""
 
 
 @dataclass(frozen=True, slots=True)

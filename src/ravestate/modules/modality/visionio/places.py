@@ -10,6 +10,7 @@ from ravestate.errors import PlatformError
 from ravestate.folders import user_folder
 
 MEND = "run `make eyes`, or pip install 'ravestate[eyes]', or set visionio.python to a Python that has the packages"
+"""The advice at the end of an error message."""
 NEEDED = ("dlib", "cv2", "face_recognition_models")
 
 

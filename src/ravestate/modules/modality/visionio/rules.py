@@ -286,7 +286,7 @@ def _recognised(ctx: rs.RuleContext, visitor: Visitor, person: ontology.Node) ->
     background=True,
 )
 async def move_up(ctx: rs.RuleContext) -> rs.Resign | None:
-    """Add a platform's user again, as another person, when the other modules have finished with the previous person."""
+    """Add a platform's user again, as another person. The delay lets other modules finish with the previous person."""
     key = ctx.payload(interloc.users.removed).key
     visitor = ctx[visitors].get(key)
     if visitor is None or not visitor.moving:

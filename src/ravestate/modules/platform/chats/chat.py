@@ -65,7 +65,7 @@ class Chat:
         self._open: list[Entry] = []  # messages that the agent has heard, and may still answer
         self._said: list[Answer] = []  # answers that are not in the store yet
         self._repeated: Counter[object] = Counter()  # answers from before a crash, which the store has kept
-        self._replaceable: dict[int, list[str]] = {}  # for each edit: the earlier answers that it has not replaced
+        self._replaceable: dict[int, list[str]] = {}  # for each edit: earlier answers without a replacement
         self._draft = Draft(id)
         self._state: Literal["open", "leaving", "gone"] = "open"
         self._mute = False  # whether the agent's words are dropped
@@ -120,7 +120,7 @@ class Chat:
 
     async def _converse(self) -> None:
         first = self._waiting[0]
-        # If the process dies, the next process hears the same message with the same random choices.
+        # The seed is fixed. So after a crash, the next process makes the same random choices for the same message.
         context = self._room.agent.context(seed=zlib.crc32(f"{self.id} {first.message.key}".encode()))
         self._repeated.update(_content(None, said) for said in self._room.store.alone(self.id))
         async with context:
@@ -152,7 +152,7 @@ class Chat:
                 self._room.store.unhear(heard)  # an orderly end is not a crash, so do not count it as one
             self._commit(heard if finished else ())
         except sqlite3.Error as error:  # the file still has the messages as unanswered
-            self._room.log.warning("answers are not stored, the next start answers again: %s", error)
+            self._room.log.warning("answers are not stored; the agent answers again after its next start: %s", error)
         self._hearing = None
         self._open = []
         self._repeated.clear()
@@ -302,7 +302,7 @@ class Chat:
     # ------------------------------------------------------------------------------------ from the agent
 
     def utter(self, text: str, origin: object = None) -> None:
-        """Send a whole utterance of the agent to the chat. `origin` is the ``ctx.origin`` of a rule for the utterance."""
+        """Send a whole utterance of the agent to the chat. `origin` is the calling rule's ``ctx.origin``."""
         cause = _cause(origin)
         self._draft.take(cause)
         self._speak(printable(text).strip(), cause)
@@ -335,7 +335,7 @@ class Chat:
             self._say(Outgoing(key="", chat=self.id, text=part), cause, first=False)
 
     def _longest(self, cause: Entry | None) -> int:
-        """Return the maximum number of characters in a message that answers `cause`. Voice is answered by voice."""
+        """Return the maximum number of characters in an answer to `cause`. The answer to a voice note is a voice note."""
         carrier = self._room.carrier
         return carrier.longest_caption if cause is not None and cause.message.kind == "voice" else carrier.longest
 
@@ -395,7 +395,10 @@ class Chat:
         self._room.make_room()
 
     def _deletions(self, entry: Entry) -> list[Answer]:
-        """Return the orders to delete the earlier answers that an edit has not replaced, if it has any answer."""
+        """Return orders to delete the earlier answers that the answers to an edit have not replaced.
+
+        If the edit has no answer, return none.
+        """
         left = self._replaceable.get(entry.n)
         if not left or not (any(each.cause == entry.n for each in self._said) or self._room.store.recorded(entry.n)):
             return []

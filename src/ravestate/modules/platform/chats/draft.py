@@ -60,4 +60,4 @@ class Draft:
                     async with asyncio.timeout(SHOWN - GROWTH):
                         await self._grown.wait()
         finally:
-            self._last = None  # an answer may be cut without an end, and must not show later
+            self._last = None  # an answer that was cut off must not show later

@@ -64,7 +64,7 @@ class Outgoing:
         kind: The kind of the message.
         text: The words, the caption of a picture, or the emoji of a reaction.
         to: The id of the message to edit, to delete, to react to or to reply to; empty if there is none.
-        topic: The topic of the message that this one answers; empty if it has none.
+        topic: The id of the topic of the answered message; empty if that message has no topic.
         data: The bytes of a picture, or of a voice note (Ogg with Opus).
         trace: The text that `Carrier.trace` returned before the first attempt; empty if there is none.
     """
@@ -87,8 +87,8 @@ class DeliveryError(PlatformError):
         wait: The seconds to wait before the next attempt, if the messenger has set a time; 0 otherwise.
         unsure: Whether the message may have arrived nevertheless, for example after a time-out.
         final: Whether every further attempt would fail, too.
-        gone: Whether the chat is closed to the agent: the user has blocked it, or it is no longer in the group.
-        moved: The chat's new id, if it has one.
+        gone: Whether the chat is closed to the agent: the user has blocked the agent, or a group has removed it.
+        moved: The chat's new id, if its id has changed; else empty.
     """
 
     def __init__(

@@ -40,7 +40,7 @@ class Room:
 
     Args:
         agent: The agent, which makes a context for each chat.
-        name: The name of the platform's module. The module has called `connect`, and has `ChatSettings`.
+        name: The name of the platform's module. `connect` has declared its rules, and it has `ChatSettings`.
         carrier: The connection to the messenger.
         account: The agent's own id on the messenger. Each account has its own file.
 
@@ -98,7 +98,7 @@ class Room:
             self.store.close()
 
     def read(self, events: Iterable[E], read: Callable[[E], Incoming | None]) -> list[Incoming]:
-        """Return the messages in the messenger's events, without those of people who are not in `allow`.
+        """Return the messages in the messenger's events that `admits` accepts, and all messages of the kind ``left``.
 
         Args:
             events: The events.
@@ -109,7 +109,7 @@ class Room:
         for event in events:
             try:
                 message = read(event)
-            except Exception:  # anybody can send an event of any shape
+            except Exception:
                 self.log.exception("an event cannot be read, and is ignored")
                 continue
             if message is not None and (message.kind == "left" or self.admits(message)):
@@ -136,6 +136,9 @@ class Room:
         Args:
             messages: The messages, in order. The room ignores messages that it got before.
             position: A name and a text to note in the same transaction, e.g. the position in a stream of events.
+
+        Raises:
+            sqlite3.Error: The file cannot be written. Do not acknowledge the messages, so that they come again.
         """
         with self.store.batch():
             entries = [entry for message in messages if (entry := self._taken(message)) is not None]

@@ -13,7 +13,7 @@ def connect(module: rs.Module, chat: rs.Slot[Chat | None], command: rs.Signal[Co
     """Declare the rules of a platform with many chats.
 
     Args:
-        module: The platform's module. `Room` looks for the next two arguments under their names in this module.
+        module: The platform's module. `Room` finds the slot and the signal there, by the names ``chat`` and ``command``.
         chat: The slot ``chat``, with the chat of the context.
         command: The signal ``command``, an input, for the commands ``/start`` and ``/help``.
     """

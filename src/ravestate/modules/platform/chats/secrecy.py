@@ -16,7 +16,7 @@ class Censor:
 
     def __init__(self) -> None:
         self._secrets: Counter[str] = Counter()
-        self._make = logging.LogRecord  # the factory that the censor covers
+        self._make = logging.LogRecord  # the factory that the censor has replaced
         self._plain = logging.Formatter()
 
     def add(self, secrets: Iterable[str]) -> None:
@@ -55,7 +55,10 @@ censor = Censor()
 
 @contextlib.contextmanager
 def secret(*texts: str) -> Generator[None]:
-    """Inside the ``with`` block, replace secret texts in the records of all loggers, including tracebacks."""
+    """Inside the ``with`` block, replace secret texts in the records of all loggers, including tracebacks.
+
+    Texts of fewer than 8 characters are not replaced, because they may be ordinary words.
+    """
     hidden = [text for text in texts if len(text) >= 8]
     if not hidden:
         yield

@@ -139,7 +139,7 @@ class Sender:
                 await attempts.fail(error, error.wait)
 
     def _is_elsewhere(self, chat: str, error: DeliveryError) -> bool:
-        """If the error says that the chat is closed or has a new id, report this. Return whether it does."""
+        """If the error says that the chat is closed or has a new id, report this. Return whether it says so."""
         if error.gone:
             self._on_gone(chat)
         elif error.moved:

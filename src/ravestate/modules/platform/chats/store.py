@@ -189,7 +189,7 @@ class Store:
                 self._db.execute("UPDATE inbox SET tries = tries - 1 WHERE n = ?", (entry.n,))
 
     def answers_to(self, edit: Entry) -> list[str] | None:
-        """Return the ids of the answers to the edited message, which are texts; an empty list if there are none yet.
+        """Return the ids of the answers to the edited text; an empty list if there are none yet.
 
         If the edited message was not the last message of its chat, return None.
         """
@@ -232,7 +232,7 @@ class Store:
         return [_outgoing(*row) for row in self._all(query, chat)]
 
     def _tidy(self, chat: str, *values: str) -> None:
-        """Delete the delivered messages with which nothing will be compared: no crash can make the agent repeat them."""
+        """Delete the delivered messages that no crash can make the agent repeat."""
         needed = "SELECT 1 FROM inbox i WHERE i.data IS NOT NULL AND i.chat = outbox.chat AND i.n = ifnull(cause, i.n)"
         self._db.execute(f"DELETE FROM outbox WHERE chat = {chat} AND state = 'sent' AND NOT EXISTS ({needed})", values)
 
@@ -248,7 +248,7 @@ class Store:
         return None
 
     def has(self, item: Item) -> bool:
-        """Return whether a message is still to be delivered."""
+        """Return whether an outgoing message is still in the store."""
         return bool(self._all("SELECT 1 FROM outbox WHERE n = ?", item.n))
 
     def begin(self, item: Item, trace: str) -> Item:

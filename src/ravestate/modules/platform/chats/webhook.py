@@ -46,7 +46,7 @@ async def listen(
         announce: A function to call as soon as the server listens.
 
     Raises:
-        PlatformError: The port is in use.
+        PlatformError: The address is not one of this machine, or the port is in use.
     """
 
     async def post(request: Request) -> Response:

@@ -65,7 +65,7 @@ def log_to_file(file: Path) -> Generator[None]:
 
 
 class _LogFile(RotatingFileHandler):
-    """A log file that never complains on the terminal, between the lines of the chat, that it cannot be written."""
+    """A log file that prints no error on the terminal of the chat, even if the file cannot be written."""
 
     def handleError(self, record: logging.LogRecord) -> None:
         if not isinstance(sys.exc_info()[1], OSError):

@@ -15,8 +15,8 @@ _BLOCK = 1 << 16
 class Pipes:
     """Reads lines in its own thread, one at a time and only on request. Writes and flushes line by line.
 
-    The streams may be pipes or files. The thread ends when its input ends or when this object is closed. While it waits
-    for a line, it does not keep the process from ending.
+    The streams may be pipes or files. The thread ends when its input ends or when this object is closed. The process
+    can end while the thread waits for a line.
     """
 
     interactive = False

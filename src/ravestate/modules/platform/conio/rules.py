@@ -58,9 +58,8 @@ async def serve(ctx: rs.RuleContext) -> None:
         if is_terminal(sys.stdin, sys.stdout):
             console.utter("Ctrl-D ends the conversation.")
         ctx[interloc.users].add(USER, ctx.settings.name)
-        asyncio.get_running_loop().call_soon(
-            note_prompt
-        )  # runs when the loop below waits: the prompt is on the screen by then
+        # `note_prompt` runs when the loop below waits. By then, the prompt is on the screen.
+        asyncio.get_running_loop().call_soon(note_prompt)
         try:
             async for line in console:
                 if line.strip():

@@ -39,7 +39,7 @@ POLL = 30_000  # if there are no events, the server holds a request for this man
 ANSWER = 20.0  # the maximum number of seconds to wait for the answer to a request
 PAGE = 100  # the maximum number of events of a room in one answer
 DEVICE = "RAVESTATE"  # always the same, so that the server recognises a message that is repeated after a restart
-JOINS = 12  # the agent stops trying to join a room after this many refusals: about six minutes
+JOINS = 12  # the agent stops trying to join a room after this many refusals: four to five minutes
 REFUSED = ("M_UNKNOWN_TOKEN", "M_MISSING_TOKEN", "M_FORBIDDEN", "M_USER_DEACTIVATED")
 FILTER: dict[str, Any] = {"presence": {"types": []}, "room": {"timeline": {"limit": PAGE}, "ephemeral": {"types": []}}}
 
@@ -170,7 +170,7 @@ class Inlet:
         """Return the events that the server left out of an answer because there were too many.
 
         Raises:
-            OSError: The server does not send them now. The caller must keep its position, so that it asks again.
+            OSError: The server does not send these events now. The caller must not advance its position, so as to ask again.
         """
         found: list[Event] = []
         while start:

@@ -108,7 +108,9 @@ def _checked(answer: Any) -> Any:
     if not isinstance(answer, ErrorResponse):
         if (status := answer.transport_response.status) < 400:
             return answer
-        raise DeliveryError(f"the server has failed (status {status})", unsure=True)  # nio mistakes this for a file
+        raise DeliveryError(
+            f"the server has failed (status {status})", unsure=True
+        )  # nio treats the error page as a file
     code = str(answer.status_code)
     if code == "M_LIMIT_EXCEEDED":
         raise DeliveryError(str(answer), wait=(answer.retry_after_ms or 5000) / 1000)

@@ -47,7 +47,7 @@ class Connection:
         self.robot = robot
         self.node = node
         self.turn = asyncio.Lock()
-        """The lock that an utterance holds while the robot speaks it, so that only one is spoken at a time."""
+        """A lock that lets the robot speak only one utterance at a time."""
         self._sleep = sleep
         self._now = now
         self._speech_timeout = speech_timeout
@@ -88,10 +88,10 @@ class Connection:
             self.node.subscribe(port.topic, port.type, take, latest=False, qos=QUALITY)
 
     async def say(self, text: str) -> None:
-        """Let the robot speak a text. Return when it has spoken; if it does not report this, return immediately.
+        """Let the robot speak a text. Wait for the answer of a service; after a message to a topic, return immediately.
 
         Raises:
-            PlatformError: The robot does not answer.
+            PlatformError: The robot does not answer, or refuses to speak.
         """
         await self._send("speak", self.robot.speak, text)
 

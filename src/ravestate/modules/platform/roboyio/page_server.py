@@ -34,7 +34,7 @@ class PageServer:
         port: The port on the loopback interface; 0 takes a free one.
 
     Raises:
-        PlatformError: The port is in use.
+        PlatformError: The port is in use, or is not a port.
     """
 
     def __init__(self, robot: StandIn, port: int = 8421) -> None:
@@ -52,7 +52,7 @@ class PageServer:
         except (OSError, OverflowError) as error:
             self._listener.close()
             raise PlatformError(
-                f"the robot's page cannot listen on port {self._port} ({error}): another port: --port 0"
+                f"the robot's page cannot listen on port {self._port} ({error}): take any free port with --port 0"
             ) from error
         config = uvicorn.Config(
             app, lifespan="off", log_config=None, log_level="warning", access_log=False, ws_max_size=1 << 16,
@@ -108,7 +108,7 @@ class PageServer:
             ValueError, TypeError, AttributeError, OverflowError, RecursionError
         ):  # ignore malformed frames
             told: Any = json.loads(said)
-            json.dumps(told, ensure_ascii=False).encode()  # a half of an emoji cannot be sent on
+            json.dumps(told, ensure_ascii=False).encode()  # raises for half of an emoji, which cannot be sent
             if isinstance(told.get("say"), str) and told["say"].strip():
                 self._robot.hear(told["say"].strip()[:LONGEST], float(told.get("direction", 0.0)))
             if isinstance(told.get("people"), list):

@@ -127,9 +127,11 @@ class Robot(pydantic.BaseModel):
     hear: Port | None = None
     direction: Direction | None = None
     people: Port | None = None
+    """The topic with the names of the people whom the robot sees, separated by commas."""
     speak: Port | None = None
     express: Faces | None = None
     head: dict[Literal["yaw", "pitch", "roll"], Axis] = pydantic.Field(default_factory=dict[Any, Any])
+    """The axes of the head, or of the whole robot if it has no head."""
     gesture: Gestures | None = None
 
     def parts(self, version: Literal[1, 2]) -> list[Part]:

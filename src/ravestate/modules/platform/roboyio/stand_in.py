@@ -80,7 +80,7 @@ class StandIn:
     # ------------------------------------------------------------------------------- the visitor's side
 
     def watch(self, watcher: Callable[[dict[str, Any]], None]) -> Callable[[], None]:
-        """Call `watcher` with the fields of `Looks`, now and after each change. Return a function that ends this."""
+        """Call `watcher` with the fields of `Looks`, now and after each change. Return a function that ends these calls."""
         self._watchers.add(watcher)
         watcher(asdict(self.looks))
         return lambda: self._watchers.discard(watcher)
@@ -170,7 +170,7 @@ class StandIn:
             if turns:
                 return
             turns = True
-            while speed:  # a later command may change it
+            while speed:  # a later command may change the speed
                 await self._sleep(TICK)
                 show()
             turns = False

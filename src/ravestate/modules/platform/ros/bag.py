@@ -39,7 +39,7 @@ def play(sim: Simulated, bag: str | Path, *, types: Types | None = None) -> int:
         The number of messages that were written to slots.
 
     Raises:
-        PlatformError: The bag cannot be read, or no slot of the agent follows one of its topics.
+        PlatformError: The bag cannot be read, no slot of the agent follows one of its topics, or `rosbags` is missing.
     """
     path = Path(bag)
     slots: dict[str, list[TopicSlot]] = {}

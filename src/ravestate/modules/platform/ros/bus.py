@@ -66,7 +66,7 @@ class Bus:
             sock.close()
             raise PlatformError(
                 f"the bus cannot listen on {self.address} ({error.strerror}): does another stand-in robot run? "
-                "Another port: --bus 127.0.0.1:7412"
+                "To use another port: --bus 127.0.0.1:7412"
             ) from error
         sock.listen()
         sock.setblocking(False)
@@ -294,7 +294,7 @@ class BusLink:
     def _broken(self) -> None:
         self._works = False
         self.restarts += 1
-        self._lost(f"the bus at {self._address} is gone; waits until it is back")
+        self._lost(f"the bus at {self._address} is gone; the node waits until it is back")
         self.start()
 
     async def close(self) -> None:

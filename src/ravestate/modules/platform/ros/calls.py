@@ -53,7 +53,7 @@ class Calls:
     def fail_all(self, why: str) -> None:
         """End all open calls with an error."""
         for call in self._open.values():
-            self._fail(call, f"{self._title}: {call.channel.binding.get('name', 'the graph')}: {why}")
+            self._fail(call, f"{self._title}: {call.channel.binding.get('name', 'the network')}: {why}")
 
     def fail(self, channel: Channel, fault: str) -> None:
         """End the calls of a channel with an error."""

@@ -15,7 +15,7 @@ from .slots import Binding
 
 KINDS = {"subscriber": "msg", "publisher": "msg", "service": "srv", "action": "action"}
 OTHERS = {"subscriber": "publishers", "publisher": "subscribers", "service": "servers", "action": "servers"}
-"""Kind of slot → the graph's word for the nodes that the slot needs at the other end."""
+"""Kind of slot → the name in `Node.graph` of the nodes that the slot needs at the other end."""
 PLACES = {"subscriber": "topics", "publisher": "topics", "service": "services", "action": "actions"}
 
 LOOKS = 8

@@ -14,7 +14,7 @@ from .connection import FromPublisher, ToSubscriber
 
 @dataclass(eq=False, slots=True)
 class Publisher:
-    """A publisher of another node. If it latches, `last` is its last message, for the new channels in `late`."""
+    """A publisher of another node. If it latches, `last` is its last message, and the channels in `late` still wait for it."""
 
     topic: str
     type: str
@@ -24,7 +24,7 @@ class Publisher:
     late: list[Channel] = field(default_factory=list[Channel])
 
     def suits(self, channel: Channel) -> bool:
-        """Return whether the publisher has the type that a channel reads. If not, the bridge reports it."""
+        """Return whether the publisher has the type that a channel reads. The bridge reports a mismatch."""
         binding = channel.binding
         return binding["type"] == self.type and self.md5 in (binding["md5"], "*")
 

@@ -56,6 +56,8 @@ MakeLink = Callable[[Mapping[str, Any], Handle, Callable[[], None], Callable[[st
 class Node:
     """A node of ROS or of the bus. The node connects at its first use, and replaces a broken link.
 
+    Each method that opens a channel raises a `PlatformError` if the type is unknown, or ROS is not installed here.
+
     Args:
         title: The name of the node in logs and errors, for example ``ros1``.
         types: The types of its messages.
@@ -267,7 +269,7 @@ class Node:
             self.send(Kind.CANCEL, channel.number, call.number)
             raise PlatformError(
                 f"{self.title}: the service {channel.name} did not answer within {timeout:g} s: is its node alive? "
-                "A longer time: timeout=..."
+                "To wait longer: timeout=..."
             ) from None
         except asyncio.CancelledError:
             self.send(Kind.CANCEL, channel.number, call.number)
@@ -279,7 +281,7 @@ class Node:
         """Return the network's ``topics``, ``services`` and ``actions``: their names, types and numbers of nodes.
 
         Raises:
-            PlatformError: The bridge does not work.
+            PlatformError: The bridge fails, or does not answer within `timeout` seconds.
         """
         self.start()
         try:

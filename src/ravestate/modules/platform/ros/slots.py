@@ -24,7 +24,7 @@ if TYPE_CHECKING:
     from .node import Channel, Node
 
 DEEP = 1000
-"""With ``keep="all"``, at most this many messages wait on their way to the agent."""
+"""With ``keep="all"``, ROS 2 queues at most this many messages for the agent."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -152,7 +152,8 @@ class Declarations:
             name: The slot's name.
             topic: The topic, for example ``/chat``. Relative names and ``~private`` names are allowed.
             type: The type of the topic's messages, for example ``std_msgs/String``.
-            keep: With ``latest``, a newer message replaces a waiting one. With ``all``, the slot gets every message.
+            keep: With ``latest``, a newer message replaces a waiting one. With ``all``, the slot gets every message, unless
+                `rate` is given or a queue overflows.
             rate: The maximum number of messages per second. The slot gets the newest message of each interval.
             qos: ROS 2: ``sensor_data``, ``latched``, or a dict of ``depth``, ``reliability``, ``durability``.
             latch: ROS 2: whether to get the last message of a publisher that latches.
@@ -375,7 +376,8 @@ async def perform(ctx: rs.RuleContext, slot: ActionSlot, goal: Any) -> Any:
         goal: The goal: any value that you could write to the slot.
 
     Raises:
-        PlatformError: The goal was refused, aborted or cancelled, or there is no server. In virtual time, there is none.
+        PlatformError: The goal was refused, aborted or cancelled, or there is no server. In virtual time,
+            there is no node, so every goal fails.
     """
     sent = Goal(goal, asyncio.get_running_loop().create_future())
     ctx[slot] = sent

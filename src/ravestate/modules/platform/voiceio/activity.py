@@ -52,6 +52,7 @@ def speech_spans(pcm: bytes, above: float = 0.5, gap: float = 0.5) -> list[tuple
     """Return the beginning and the end (seconds) of each span of speech in a sound (16 kHz).
 
     A chunk is speech if its probability is at least `above`. A pause shorter than `gap` seconds does not end a span.
+    A span of a single chunk is left out.
     """
     judge, found = Activity(), list[tuple[float, float]]()
     sound = samples(pcm)

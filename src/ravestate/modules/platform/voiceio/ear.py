@@ -125,7 +125,7 @@ class Ear:
             yield from self._hear(chunk, now - len(self._clean) / 2 / IN_RATE, agent_speaks)
 
     def take(self) -> Turn | None:
-        """End the turn, and return it."""
+        """End the turn, and return it; None if there is none."""
         turn, self.turn = self.turn, None
         return turn
 

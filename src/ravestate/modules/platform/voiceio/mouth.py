@@ -24,8 +24,8 @@ HEARD = 0.5
 FAINT = 0.1
 """Sound at the end of a word counts as a pause if its level is below this share of the word's greatest level."""
 DRIFT = 0.06
-"""The echo's reference is the loudspeaker's sound for the echo canceller. It advances with the microphone's sound. If
-it is more than this many seconds away from the loudspeaker's position, it jumps there."""
+"""The echo's reference is the loudspeaker's sound for the echo canceller. The reference advances with the microphone's
+sound. If it is more than this many seconds away from the loudspeaker's position, it jumps there."""
 LEAD = 4.0
 """If the loudspeaker's queue has more than this many seconds of sound, the mouth waits before it synthesises more."""
 KEPT = 30.0
@@ -100,7 +100,7 @@ class Mouth:
         self.line = line
         self.voice = voice
         self.turn = asyncio.Lock()
-        """The lock that an utterance holds while it is spoken, so that only one is spoken at a time."""
+        """A lock that lets the mouth speak only one utterance at a time."""
         self.growing: Speech | None = None
         """The utterance that is still growing; None if there is none."""
         self.said = ""

@@ -109,7 +109,7 @@ async def open_conversation(given: Line | None, settings: Settings, warn: Callab
     Raises:
         PlatformError: A model, a program or a device is missing. The message says how to get it.
     """
-    recogniser = Recogniser(settings)  # in a thread, it would get lost if this task were cancelled
+    recogniser = Recogniser(settings)  # not in a thread, where a cancellation would leave it open
     voice = line = None
     try:
         recorded = given is None and is_file(settings.source)  # the same recording must lead to the same conversation

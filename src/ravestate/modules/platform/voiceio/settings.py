@@ -70,7 +70,7 @@ class Settings(rs.Settings):
     ask_back_below: Share = 0.38
     """The agent asks back if the recogniser's confidence is below this."""
     back_channel: Seconds = 1.0
-    """If the user speaks longer than this (seconds), it is more than an "mhm", so the agent stops speaking."""
+    """If the user speaks longer than this (seconds), their words are more than an "mhm", and the agent stops speaking."""
     filler_after: Seconds = 0.8
     """The agent says a filler after this many seconds without an answer; 0 for no fillers."""
     fillers: tuple[str, ...] = ("Hm.", "Well.", "Let me see.")

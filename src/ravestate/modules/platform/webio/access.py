@@ -67,7 +67,8 @@ class Access:
     def foreign_embedder(self, headers: Mapping[str, str]) -> str | None:
         """Return the origin of the site that tries to embed the page without permission; None if no site tries.
 
-        Browsers send the necessary headers only over HTTPS or to this machine, and only if widget.js permits it.
+        Browsers send ``Sec-Fetch-Dest`` only over HTTPS or to this machine. They send ``Referer`` because widget.js asks
+        for it.
         """
         if headers.get("sec-fetch-dest") not in ("iframe", "frame"):
             return None

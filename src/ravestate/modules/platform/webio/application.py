@@ -32,7 +32,7 @@ PAGE = Path(__file__).parent / "page"
 """The folder of the built page: the output of ``npm run build`` in ``frontend/``."""
 
 MOST_LOGGED = 100
-"""The log names at most this many embedding sites, each only once, so that strangers cannot fill it."""
+"""The log names at most this many embedding sites, each only once, so that strangers cannot fill the log."""
 
 log = logging.getLogger("ravestate.webio")
 

@@ -42,7 +42,7 @@ log.addFilter(lambda record: record.msg not in FOREIGN)
 
 
 class LimitedHTTP(H11Protocol):
-    """HTTP with time limits, and at most `most` connections, `per_address` of them from one address.
+    """HTTP with time limits, and at most `most` connections, of which at most `per_address` come from one address.
 
     WebSockets count as connections, too.
     """

@@ -28,8 +28,8 @@ CHUNK = rawio.OUT_RATE // 5 * SAMPLE
 """The maximum number of bytes of the agent's sound in one frame (0.2 s)."""
 
 AHEAD = rawio.OUT_RATE
-"""At most about this many unplayed samples (1 s) are in the browser window. `stop` drops them, so there should be
-few."""
+"""At most about this many unplayed samples (1 s) are in the browser window. `stop` drops them, so more would be
+wasted."""
 
 BETWEEN = 0.2
 """After a report of the browser window, `played` assumes for this many seconds that the sound keeps playing."""

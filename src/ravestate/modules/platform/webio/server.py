@@ -41,8 +41,8 @@ SWITCH = 0.0005
 With Python's default, each turn would wait 5 ms while another thread analyses a sentence."""
 
 COLLECT = (10_000, 10, 10)
-"""The thresholds of the cyclic garbage collector. With Python's default (700, 10, 10), it would scan all objects of
-several hundred conversations every few seconds. All answers would have to wait for it."""
+"""The thresholds of the cyclic garbage collector. With the default of Python 3.11 (700, 10, 10), it would scan all
+objects of several hundred conversations every few seconds. All answers would have to wait for it."""
 
 
 _before: list[tuple[float, tuple[int, int, int]]] = []  # for each running server: the settings to restore
@@ -67,7 +67,8 @@ class Server:
     """Serves the page of an agent: ``async with Server(agent) as server``. See also `webio.app`.
 
     Raises:
-        PlatformError: Other machines can reach the address, and there is no token. Or `make_app` refuses the agent.
+        PlatformError: Other machines can reach the address, and there is no token. Or the agent lacks `webio`, or has
+            `conio`.
     """
 
     def __init__(self, agent: Agent, routes: Iterable[BaseRoute] = (), inside: str | None = None) -> None:

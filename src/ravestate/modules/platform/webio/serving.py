@@ -23,7 +23,7 @@ async def serve(agent: Agent) -> None:
     """Serve an agent's page with the settings of ``webio`` until the task is cancelled.
 
     Raises:
-        PlatformError: The port is in use, a token is missing, or starlette or uvicorn is not installed.
+        PlatformError: The port is in use, a token is missing, or starlette, uvicorn or websockets is not installed.
     """
     await asyncio.to_thread(_load)  # the imports take a quarter of a second, and would hold up other tasks
     from .server import Server
@@ -45,7 +45,7 @@ def app(agent: Agent, routes: Iterable[BaseRoute] = (), inside: str | None = Non
         inside: The path of the board among those routes, e.g. ``board/``.
 
     Raises:
-        PlatformError: Starlette is not installed.
+        PlatformError: starlette, uvicorn or websockets is not installed. Or the agent lacks `webio`, or has `conio`.
 
     Example:
         ```python

@@ -84,8 +84,8 @@ def goal(
         tries: The maximum number of tries; the goal is dropped after the last one.
 
     Raises:
-        rs.DeclarationError: `say` and `intent` are both given or both missing, a number is impossible, or an expression
-            is invalid.
+        rs.DeclarationError: `say` and `intent` are both given or both missing, a number is impossible, an expression is
+            invalid, or `unless` contains a signal.
 
     Example:
         >>> import ravestate as rs

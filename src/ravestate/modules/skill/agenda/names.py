@@ -57,5 +57,5 @@ goals: rs.Collection[GoalState] = module.collection("goals")
 """Name of a goal's rule → the goal's state, for each goal that was pursued, reached or dropped."""
 
 topics: rs.Collection[str] = module.collection("topics", input=True)
-"""The topics of the conversation. While there is a topic, no goal is pursued. A skill adds a topic when it begins to
-talk about something, and removes the topic at the end."""
+"""The topics of the conversation, by the name of the skill. While there is a topic, no goal is pursued. A skill adds a
+topic when it begins to talk about something, and removes the topic at the end."""

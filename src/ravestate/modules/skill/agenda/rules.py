@@ -30,7 +30,7 @@ async def yield_to_the_user(ctx: rs.RuleContext) -> None:
 
 @module.rule(when=rs.startup.detached(), background=True)
 def adopt_wishes(ctx: rs.RuleContext) -> None:
-    """Add the goals in the settings to this context only. Other contexts may share its policy, but not these goals.
+    """Add the goals in the settings to this context only. Other contexts of the same policy do not get these goals.
 
     This function runs in a thread, because adding a rule takes a few milliseconds and would hold up the event loop.
     """

@@ -14,9 +14,9 @@ def whole_words(pattern: str) -> re.Pattern[str]:
     """Compile an expression that matches whole words, in upper or lower case.
 
     Raises:
-        re.error: It is not a regular expression.
+        re.error: The pattern is not a regular expression.
     """
-    re.compile(pattern)  # by itself: the brackets of "yes)|(no" would fit those of the next line
+    re.compile(pattern)  # alone: with the brackets of the next line, "yes)|(no" would be valid
     return re.compile(rf"(?<!\w)(?:{pattern})(?!\w)", re.IGNORECASE)
 
 

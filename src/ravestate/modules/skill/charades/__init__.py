@@ -1,4 +1,4 @@
-"""Charades: the user acts something out, and the agent guesses. Then the agent sets a riddle."""
+"""Charades: the user acts something out, and the agent guesses. On request, the agent sets a riddle instead."""
 
 from __future__ import annotations
 

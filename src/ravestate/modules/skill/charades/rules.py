@@ -49,7 +49,7 @@ PRIORITY = 40.0
 JUST = 0.1
 """Speech that ended at most this many seconds ago counts as the last word of the countdown."""
 SPEAKING = 6.0
-"""The agent waits at most this many seconds until its last word is audible."""
+"""The agent waits at most this many seconds until the user has heard the last word of the countdown."""
 
 
 def is_on(now: Game) -> bool:
@@ -128,6 +128,7 @@ async def listen(ctx: rs.RuleContext) -> rs.Resign | None:
     return None
 
 
+# The slots that an answer in the game writes, the signals that it emits, and the slots that it reads.
 EFFECTS = (game, verbaliser.intent, rawio.output, agenda.topics)
 EMITTED = (prompted, counted, begun, declined, perform, activity.taught, *FEELINGS.values())
 SURROUNDINGS = (gestures, activity.in_view)
@@ -148,7 +149,7 @@ async def answer(ctx: rs.RuleContext) -> None:
     weight=2.5,  # this rule outranks small talk about boredom
 )
 async def propose(ctx: rs.RuleContext) -> None:
-    """Offer charades to a user who wants to play, or is bored. If the user names a game, a skill for that game goes first."""
+    """Offer charades to a user who wants to play, or is bored."""
     carry_out(ctx, play(ctx[game], ctx.payload(invited), world_of(ctx)))
 
 
@@ -341,7 +342,7 @@ async def be_patient(ctx: rs.RuleContext) -> rs.Resign | None:
     background=True,
 )
 async def resume(ctx: rs.RuleContext) -> rs.Resign | None:
-    """Return to the game after the user's words on something else, once no other rule has anything to do."""
+    """Return to the game after the user's words on something else, as soon as no foreground rule runs or waits."""
     turn = ctx[game].turn
     await ctx.quiet()
     now = ctx[game]

@@ -47,7 +47,7 @@ async def bid_farewell(ctx: rs.RuleContext) -> rs.Resign | None:
 
 @module.rule(when=rawio.input.changed, emits=(hello, goodbye))
 async def listen(ctx: rs.RuleContext) -> None:
-    """Notice a greeting or a goodbye. The encoder may take a few milliseconds, so it runs in a thread."""
+    """Notice a greeting or a goodbye. The sentence model may take a few milliseconds, so it runs in a thread."""
     act = await asyncio.to_thread(_only_act, ctx.payload(rawio.input.changed))
     if act:
         ctx.emit(hello if act == "greeting" else goodbye)

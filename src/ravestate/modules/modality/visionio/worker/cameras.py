@@ -194,6 +194,7 @@ class Folder:
         """Return the picture at a time (seconds since the beginning); None if it was already returned.
 
         Raises:
+            OSError: The file cannot be read.
             ValueError: The file is not a picture.
         """
         place = int(at / EACH)

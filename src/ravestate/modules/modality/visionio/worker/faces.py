@@ -24,8 +24,8 @@ WITHIN = 0.6
 LAP = 0.2
 """Neighbouring tiles share this part of a tile."""
 HOG = 960
-"""For dlib's detector, which finds faces of 80 pixels, the longer side of a picture is scaled to this many pixels. A
-thorough look uses twice as many."""
+"""For dlib's detector, the longer side of a picture is scaled to this many pixels, or to twice as many for a thorough
+look. The detector finds faces of at least 80 pixels."""
 FACE = 110
 """To refine the box of a face, the face is scaled to this width (pixels)."""
 

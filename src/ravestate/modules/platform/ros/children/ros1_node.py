@@ -138,7 +138,7 @@ class Ros1Node:
         if pid == self._pid:
             return
         if not pid:
-            self._pipe.note(0, f"the ROS master at {self._uri} is gone; waits until it is back")
+            self._pipe.note(0, f"the ROS master at {self._uri} is gone; the node waits until it is back")
             while not (pid := self._master_pid()):
                 time.sleep(PROBE / 4)
         if pid != self._pid:
