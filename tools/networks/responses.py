@@ -76,7 +76,7 @@ def grades_in(files: Sequence[Path]) -> dict[str, list[tuple[int, int]]]:
 def network(torch: Any, kinds: Sequence[str], replies: Sequence[tuple[str, str]]) -> Any:
     """Return a new network: upper layers of the sentence model, a layer for the kinds, and two vectors for each reply.
 
-    The product of such a vector with one for the text is, as a logit, the probability that the reply is at least
+    The product of such a vector with one for the text is a logit. It stands for the probability that the reply is at least
     acceptable, or good. A reply's vectors are made of its meaning, its kind, and a part of its own. During the training,
     half of these parts are missing each time, so that the network does not learn single replies by heart.
     """
