@@ -1,7 +1,8 @@
-"""Measure the kinds of reply that the listening skill finds for an utterance.
+"""Measure the replies that the listening skill chooses for an utterance.
 
 The authors of `responses_rows.tsv` wrote whole conversations with a companion, and chose the kinds of reply that suit
-each utterance. A ``!`` marks a kind that only seems to suit. The network is not trained on these utterances.
+each utterance. A ``!`` marks a kind that only seems to suit. A reader graded about eleven replies to each utterance in
+`responses_grades.tsv`: 0 does not suit, 1 does no harm, 2 is good. The network is not trained on these utterances.
 """
 
 from __future__ import annotations
@@ -9,9 +10,10 @@ from __future__ import annotations
 from quality import measure
 from quality.measure import Result
 from ravestate.language.normal import normalise
-from ravestate.modules.skill.wildtalk.listening.responses import LEAST, network
+from ravestate.modules.skill.wildtalk.listening.material import PREFIX, material
+from ravestate.modules.skill.wildtalk.listening.responses import network, responses_to
 
-NAME = "responses_rows"
+NAME, GRADED = "responses_rows", "responses_grades"
 
 
 def rows() -> list[tuple[str, str, list[str]]]:
@@ -28,21 +30,46 @@ def rows() -> list[tuple[str, str, list[str]]]:
     return found
 
 
+def graded() -> dict[str, dict[str, int]]:
+    """Return the grades of replies: utterance → reply → grade."""
+    found: dict[str, dict[str, int]] = {}
+    for line in (measure.HERE / f"{GRADED}.tsv").read_text(encoding="utf-8").splitlines():
+        text, *grades = line.split("\t")
+        found[text] = {grade[2:]: int(grade[0]) for grade in grades}
+    return found
+
+
 def results() -> list[Result]:
-    """Measure the set. `measure.py` prints the result."""
-    return [measured()]
+    """Measure both sets. `measure.py` prints the results."""
+    return [measured(), measured_grades()]
 
 
 def measured() -> Result:
-    """Return the shares of the utterances whose likeliest kind is likely enough; and of these, the shares that suit
-    and that are marked as wrong."""
+    """Return the share of the utterances with a reply that may be said; and of these replies, the shares whose kinds suit
+    and are marked as wrong."""
     network().load()
-    found = [
-        (text, kinds, *network().ranked(normalise(text).unguessed, normalise(before).unguessed)[0])
-        for before, text, kinds in rows()
-    ]
-    said = [(text, kinds, name) for text, kinds, name, chance in found if chance >= LEAST]
+    said: list[tuple[str, list[str], str]] = []
+    for before, text, kinds in rows():
+        replies = responses_to(material(), normalise(text).unguessed, normalise(before).unguessed, dark=False)
+        said += [(text, kinds, one.kind.name.removeprefix(PREFIX)) for one in replies[:1]]
     suits = sum(name in kinds for _, kinds, name in said)
     wrong = [f"{text} -> {name}" for text, kinds, name in said if f"!{name}" in kinds]
-    shares = {"likely": len(said) / len(found), "suits": suits / len(said), "wrong": len(wrong) / len(said)}
-    return Result(NAME, len(found), shares, wrong)
+    shares = {"likely": len(said) / len(rows()), "suits": suits / len(said), "wrong": len(wrong) / len(said)}
+    return Result(NAME, len(rows()), shares, wrong)
+
+
+def measured_grades() -> Result:
+    """Return how the readers graded the replies that the listener would choose among the graded ones."""
+    network().load()
+    befores = {text: before for before, text, _ in rows()}
+    chosen: list[tuple[str, str, int]] = []
+    for text, grades in graded().items():
+        before = normalise(befores[text]).unguessed
+        found = responses_to(material(), normalise(text).unguessed, before, dark=False)
+        best = [one.line.text for one in found if one.line.text in grades]
+        chosen += [(text, reply, grades[reply]) for reply in best[:1]]
+    shares = {
+        name: sum(one[2] == grade for one in chosen) / len(chosen) for grade, name in enumerate(("bad", "fair", "good"))
+    }
+    bad = [f"{text} -> {reply}" for text, reply, grade in chosen if grade == 0]
+    return Result(GRADED, len(chosen), {"likely": len(chosen) / len(graded()), **shares}, bad)

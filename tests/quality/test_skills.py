@@ -50,12 +50,14 @@ def test_facts_are_understood_in_sentences_that_nobody_has_seen() -> None:
     assert no_fact.shares["right"] >= 0.95, no_fact.misses
 
 
-def test_most_kinds_of_reply_that_the_listener_chooses_suit_and_few_are_wrong() -> None:
-    result = responses.measured()
-    print(result.shares, *result.misses, sep="\n  ")
-    assert result.shares["suits"] >= 0.6
-    assert result.shares["wrong"] <= 0.06
-    assert result.shares["likely"] >= 0.65
+def test_most_replies_that_the_listener_chooses_suit_and_few_are_wrong() -> None:
+    kinds, grades = responses.results()
+    print(kinds.shares, grades.shares, *kinds.misses, *grades.misses, sep="\n  ")
+    assert kinds.shares["suits"] >= 0.6
+    assert kinds.shares["wrong"] <= 0.06
+    assert kinds.shares["likely"] >= 0.65
+    assert grades.shares["good"] >= 0.5
+    assert grades.shares["bad"] <= 0.27
 
 
 @pytest.mark.parametrize("name", skills.SETS)

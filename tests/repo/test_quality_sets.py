@@ -83,7 +83,7 @@ def known() -> dict[str, Path]:
     ],
 )
 def test_a_set_of_unseen_sentences_shares_none_with_the_training(name: str, training: str) -> None:
-    learnt = {plain(text) for file in (TRAINING / training).iterdir() for text in _sentences(file)}
+    learnt = {plain(text) for file in (TRAINING / training).rglob("*.t[sx][vt]") for text in _sentences(file)}
     shared = [text for text in _sentences(BLIND.parent / name) if plain(text) in learnt]
     assert len(shared) == 0, f"{len(shared)} of {name}"  # the message shows no sentence
 

@@ -20,6 +20,8 @@ KEPT = 0.7
 """The chance that a text is read together with the utterance before it. The network must also work without it."""
 WIDTH = 384
 """The length of a token's vector after one layer."""
+HIDDEN = 128
+"""The size of the LSTM of a reader, in each direction."""
 
 
 class Row:
@@ -36,7 +38,6 @@ class Row:
         """The utterance before, in a talk."""
         self.context = 0
         self.classes: list[int] = []
-        self.wrong: list[int] = []
         self.denied: list[float] = []
 
     def __len__(self) -> int:
@@ -59,8 +60,8 @@ def batches(rows: Sequence[Row], size: int, order: random.Random) -> list[list[R
     return found
 
 
-def padded(torch: Any, rows: Sequence[Row]) -> tuple[Any, Any, Any]:
-    """Return the vectors, the marks and the lengths of some rows, with random noise against overfitting."""
+def padded(torch: Any, rows: Sequence[Row], *, noisy: bool = True) -> tuple[Any, Any, Any]:
+    """Return the vectors, the marks and the lengths of some rows, perhaps with random noise against overfitting."""
     parts = [_with_before(row) if torch.rand(1).item() < KEPT else (row.vectors, row.marks) for row in rows]
     longest = max(len(marks) for _, marks in parts)
     vectors = torch.zeros(len(rows), longest, rows[0].vectors.shape[1])
@@ -68,8 +69,9 @@ def padded(torch: Any, rows: Sequence[Row]) -> tuple[Any, Any, Any]:
     for number, (one, marked) in enumerate(parts):
         vectors[number, : len(marked)] = torch.from_numpy(one.astype(np.float32))
         marks[number, : len(marked)] = torch.tensor(marked)
-    vectors = vectors + torch.randn_like(vectors) * 0.05
-    vectors = vectors * (torch.rand(vectors.shape[:2]) > 0.05)[..., None]
+    if noisy:
+        vectors = vectors + torch.randn_like(vectors) * 0.05
+        vectors = vectors * (torch.rand(vectors.shape[:2]) > 0.05)[..., None]
     return vectors, marks, torch.tensor([len(marks) for _, marks in parts])
 
 
@@ -109,6 +111,33 @@ def run(torch: Any, lstm: Any, tokens: Any, lengths: Any) -> Any:
     return tools.pad_packed_sequence(lstm(packed)[0], batch_first=True)[0]
 
 
+def reader(torch: Any, layers: int, dropout: float) -> Any:
+    """Return a network that reads a text: a bidirectional LSTM, of whose outputs it takes the maximum, the mean, and a
+    weighted mean: 6 * HIDDEN numbers."""
+    nn = torch.nn
+
+    class Reader(nn.Module):  # type: ignore[misc, name-defined]
+        def __init__(self) -> None:
+            super().__init__()
+            self.mixer = mixer(torch, layers, 1 + EARLIER)
+            self.lstm = nn.LSTM(WIDTH, HIDDEN, 1, batch_first=True, bidirectional=True)
+            self.drop = nn.Dropout(dropout)
+            self.weight = nn.Linear(2 * HIDDEN, 1)
+
+        def forward(self, vectors: Any, marks: Any, lengths: Any = None) -> Any:
+            tokens = run(torch, self.lstm, self.drop(self.mixer(vectors, marks)), lengths)
+            weights = self.weight(tokens)[..., 0]
+            if lengths is None:
+                return torch.cat([(weights.softmax(1)[..., None] * tokens).sum(1), tokens.max(1)[0], tokens.mean(1)], 1)
+            real = torch.arange(tokens.shape[1])[None] < lengths[:, None]
+            weights = weights.masked_fill(~real, -1e9).softmax(1)
+            mean = (tokens * real[..., None]).sum(1) / lengths[:, None]
+            highest = tokens.masked_fill(~real[..., None], -9.0).max(1)[0]
+            return self.drop(torch.cat([(weights[..., None] * tokens).sum(1), highest, mean], 1))
+
+    return Reader()
+
+
 def trained(
     torch: Any,
     made: Any,
@@ -117,12 +146,15 @@ def trained(
     epochs: int,
     size: int,
     rate: float,
+    slow: Sequence[Any] = (),
 ) -> Any:
-    """Train a network, and return it."""
-    order = random.Random(0)
-    optimiser = torch.optim.AdamW(made.parameters(), lr=rate, weight_decay=0.05)
+    """Train a network, and return it. The parameters `slow` have been trained before, and learn at 15 % of the rate."""
+    order, known = random.Random(0), {id(one) for one in slow}
+    groups = [{"params": [one for one in made.parameters() if id(one) not in known]}, {"params": list(slow)}]
+    optimiser = torch.optim.AdamW(groups[: 1 + bool(slow)], lr=rate, weight_decay=0.05)
     steps = epochs * -(-len(rows) // size)
-    schedule = torch.optim.lr_scheduler.OneCycleLR(optimiser, rate, total_steps=steps)
+    rates = [rate, 0.15 * rate][: 1 + bool(slow)]
+    schedule = torch.optim.lr_scheduler.OneCycleLR(optimiser, rates, total_steps=steps, pct_start=0.1 if slow else 0.3)
     for epoch in range(epochs):
         began, total = time.monotonic(), 0.0
         made.train()

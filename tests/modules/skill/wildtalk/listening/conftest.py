@@ -15,6 +15,7 @@ from ravestate.modules.meta.nlp.pipeline import pipeline
 from ravestate.modules.skill.wildtalk.listening import Heard, Listener, State
 from ravestate.modules.skill.wildtalk.listening.bank import Bank
 from ravestate.modules.skill.wildtalk.listening.material import Material, material
+from ravestate.modules.skill.wildtalk.listening.moment import Line, Moment
 
 
 class Talk:
@@ -64,3 +65,7 @@ def begin() -> Callable[[int], Talk]:
 def talk() -> Talk:
     """A talk."""
     return Talk()
+
+
+def lines_of(moment: Moment) -> list[Line]:
+    return [line for lines in moment.groups.values() for line in lines]

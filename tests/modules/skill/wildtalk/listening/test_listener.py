@@ -15,12 +15,12 @@ from ravestate.modules.skill.wildtalk.listening import Heard, State
 from ravestate.modules.skill.wildtalk.listening import hearing as hearing_module
 from ravestate.modules.skill.wildtalk.listening.bank import Bank
 from ravestate.modules.skill.wildtalk.listening.hearing import hear, likely
-from ravestate.modules.skill.wildtalk.listening.material import Line, Moment, material
+from ravestate.modules.skill.wildtalk.listening.material import Line, material
 from ravestate.modules.skill.wildtalk.listening.moment import roles_in
 from ravestate.modules.skill.wildtalk.listening.roles import roles_of
 from ravestate.modules.skill.wildtalk.listening.state import Pending
 
-from .conftest import Talk, listener_with, seen
+from .conftest import Talk, lines_of, listener_with, seen
 
 PLAIN = [
     "the bus came late", "i bought some bread", "my aunt has a garden", "ok", "we sat in the park", "hm",
@@ -34,10 +34,6 @@ ODD = [
 CLAIMS = re.compile(
     r"\b(yesterday|last (?:week|night|year)) I\b|\bI (?:ate|drank|slept|drove|walked|went|visited)\b|\bmy (?:wife|husband|mother)\b"
 )
-
-
-def lines_of(moment: Moment) -> list[Line]:
-    return [line for lines in moment.groups.values() for line in lines]
 
 
 def all_lines() -> list[Line]:
@@ -61,11 +57,11 @@ def test_a_repeated_utterance_gets_different_answers(text: str, talk: Any) -> No
 
 
 def no_responses(*_: Any, **__: Any) -> list[Any]:
-    """Stand in for `responses_to`: no kind of reply suits."""
+    """Stand in for `responses_to`: no reply suits."""
     return []
 
 
-def test_if_no_kind_of_reply_suits_the_listener_takes_up_the_highlight(
+def test_if_no_reply_suits_the_listener_takes_up_the_highlight(
     begin: Callable[[int], Any], monkeypatch: pytest.MonkeyPatch
 ) -> None:
     monkeypatch.setattr(hearing_module, "responses_to", no_responses)
@@ -127,7 +123,7 @@ def test_a_likely_move_gets_an_answer_of_its_kind(text: str, move: str, talk: An
     fitting = {line.text for one in situations if move in one.moves or one.tone == "sad" for line in lines_of(one)}
     suiting = {line.text for one in material().bank.similar([text], text) for line in lines_of(one.moment)}
     told = {line.text for one in material().taking_up.values() for line in lines_of(one)}
-    suiting |= {line.text for _, kind in hearing.responses for line in lines_of(kind)}
+    suiting |= {one.line.text for one in hearing.responses}
     taken = hearing.taken is not None and any(said.endswith(text) for text in told)
     assert said in replies | fitting | suiting or (taken and move == "interest")
 

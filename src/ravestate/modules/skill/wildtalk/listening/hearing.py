@@ -1,6 +1,6 @@
 """An utterance as the listener sees it: tags for the table of answers (order.yaml), and roles.
 
-`meaning` finds the feelings, acts and moments, and `responses` the kinds of reply.
+`meaning` finds the feelings, acts and moments, and `responses` the replies that suit.
 
 A *moment* is a situation in a conversation that has its own phrases, such as good news. A *move* is the next step of a
 good listener, such as to console. A *role* is a placeholder in a phrase. An *act* is what an utterance does, such as
@@ -31,7 +31,7 @@ from .lookup import ALIKE, KNOWN, is_dark, near_in
 from .material import Material
 from .meaning import BRIEFLY, EXACT, MEANT, SAD, SURE, TURNED, feeling_of, fits_move, meanings_of, moment_of
 from .moment import Moment
-from .responses import LEAST, responses_to, surely_suits
+from .responses import LEAST, Response, responses_to, surely_suits
 from .responses import SURE as SUITED
 from .roles import Roles, has_verb, is_request, roles_of, turned
 from .state import State
@@ -107,8 +107,8 @@ class Hearing:
     """The tone of the utterance; but ``quiet`` if the conversation is sad, and the utterance is glad, funny or neutral."""
     near: list[Found] = field(default_factory=list[Found])
     """The entries of the bank that resemble the utterance, the most suitable first."""
-    responses: list[tuple[float, Moment]] = field(default_factory=list[tuple[float, Moment]])
-    """The kinds of reply that suit the utterance, the best first, with their probabilities."""
+    responses: list[Response] = field(default_factory=list[Response])
+    """The replies that suit the utterance, the best first."""
     follow_up: Moment | None = None
     """The follow-up of the last entry that the utterance resembles."""
     rest: Moment | None = None
@@ -120,7 +120,7 @@ class Hearing:
         """Remove the answers of a moment or an entry of the bank, and those of an area of life."""
         self.near = [one for one in self.near if one.moment.name != moment]
         self.meanings = [one for one in self.meanings if one.name != moment]
-        self.responses = [(chance, kind) for chance, kind in self.responses if kind.name != moment]
+        self.responses = [one for one in self.responses if one.kind.name != moment]
         if not surely_suits(self.responses):
             self.tags -= {"responsive"}
         if not self.near or self.near[0].fit < ALIKE:

@@ -39,6 +39,8 @@ STANCES = ("like", "curious", "cool")
 PERHAPS = 0.42
 """The minimum rough estimate of that probability at which the listener computes it exactly. 95 % of the entries that
 reach `KNOWN` also reach this estimate."""
+THIRD = 0.4
+"""The rank that a reply loses if it is the third question in a row."""
 AWAY = 3
 """The number of answers without an entry of the bank after which its thread is forgotten."""
 
@@ -351,9 +353,10 @@ class Listener:
         yield _Source(moves[unsure].lines(*groups))
 
     def _response(self, hearing: Hearing, state: State, chance: random.Random) -> Iterator[_Source]:
-        """Yield the replies of the kinds that suit the utterance, the best kind first."""
-        for _, kind in hearing.responses:
-            yield _Source(kind.lines("say"), kind, weak=is_general(kind))
+        """Yield the replies that suit the utterance, the best first. After two questions, a third one counts less."""
+        asked = len(state.said) > 1 and all(text.endswith("?") for text in state.said[-2:])
+        for one in sorted(hearing.responses, key=lambda one: (THIRD if asked and one.line.asks else 0.0) - one.rank):
+            yield _Source([[one.line]], one.kind, weak=is_general(one.kind))
 
     def _opinion(self, hearing: Hearing, state: State, chance: random.Random) -> Iterator[_Source]:
         """Yield the agent's opinion, which is chosen once per conversation. The agent does not judge people."""
