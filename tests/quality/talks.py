@@ -22,6 +22,7 @@ FLOORS = {
     "bye": 0.9,
     "advice": 0.9,
     "closing": 0.8,
+    "persons": 0.9,
 }
 """The minimum share of fitting answers for each cause."""
 

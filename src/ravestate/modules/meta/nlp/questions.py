@@ -1,4 +1,4 @@
-"""Find the single questions of an utterance: *What is my name and where do I live?* asks two."""
+"""Find the single questions of an utterance. For example, *who are you and where am I* asks two."""
 
 from __future__ import annotations
 
