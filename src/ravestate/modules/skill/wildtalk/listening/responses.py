@@ -30,8 +30,8 @@ LIGHT = ("glad", "funny")
 """The tones of cheerful and funny replies."""
 LONGEST = 300
 """The maximum number of characters that the network reads."""
-REMEMBERED = 64
-"""The number of texts whose grades are kept, because modules may ask for a text again."""
+REMEMBERED = 8
+"""The number of texts whose grades are kept, because modules may ask for a text again. A text takes 200 kB."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -93,7 +93,7 @@ def responses_to(phrases: Material, text: str, before: str = "", *, dark: bool) 
         if not known or (dark and kind.tone in LIGHT):
             continue
         mean = sum(grade for grade, _ in known) / len(known)
-        likely = KIND * log(known[0][1])
+        likely = KIND * log(max(known[0][1], 1e-9))
         for line in lines:
             grade = grades[line.text][0] if line.text in grades else mean
             found.append(Response(grade, grade + likely, kind, line))
