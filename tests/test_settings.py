@@ -140,6 +140,45 @@ def test_a_text_is_parsed_only_if_its_field_takes_more_than_text(
     assert value_of(text, model, field, lambda text: load_yaml(text, "--set")) == value
 
 
+class Checked(rs.Settings):
+    low: int = 0
+    label: str | None = None
+    names: tuple[str, ...] = ()
+    after: str | None = None
+
+    @pydantic.model_validator(mode="before")
+    @classmethod
+    def ordered(cls, values: dict[str, Any]) -> dict[str, Any]:
+        if values["low"] > 3:
+            raise ValueError("low must be at most 3")
+        return values
+
+    @pydantic.field_validator("names", mode="before")
+    @classmethod
+    def split(cls, value: Any) -> Any:
+        return tuple(value.split()) if isinstance(value, str) else value
+
+    @pydantic.field_validator("after")
+    @classmethod
+    def differs(cls, value: str | None, info: pydantic.ValidationInfo) -> str | None:
+        return value if value != info.data["label"] else None
+
+
+@pytest.mark.parametrize(
+    ("field", "text", "value"),
+    [
+        ("label", "12", "12"),
+        ("label", "null", None),
+        ("low", "12", 12),
+        ("names", "12", "12"),  # its validator takes a text
+        ("names", "[a]", ["a"]),
+        ("after", "12", "12"),  # its validator reads another field
+    ],
+)
+def test_how_a_text_is_parsed_does_not_depend_on_other_fields(field: str, text: str, value: object) -> None:
+    assert value_of(text, Checked, field, lambda text: load_yaml(text, "--set")) == value
+
+
 def test_an_environment_variable_has_the_name_of_its_module_and_field() -> None:
     assert variable_of("my-server", "address") == "RAVESTATE_MY_SERVER_ADDRESS"
     found = load_settings([my_server], None, {"RAVESTATE_MY_SERVER_ADDRESS": "here"})

@@ -21,6 +21,14 @@ from ravestate.errors import DeclarationError, DeclarationErrors, nearest
 
 TEXT = (str, pydantic.SecretStr)
 
+VALIDATORS: dict[str, Callable[[Any], Any]] = {
+    "before": pydantic.BeforeValidator,
+    "after": pydantic.AfterValidator,
+    "plain": pydantic.PlainValidator,
+    "wrap": pydantic.WrapValidator,
+}
+"""The annotation for each mode of ``pydantic.field_validator``."""
+
 NameOrPath = Annotated[str, PurePath]
 """The type of a setting that takes a name or a path, such as a microphone's name or a sound file."""
 
@@ -205,10 +213,28 @@ def _kinds(annotation: Any) -> Iterator[Any]:
 
 
 def _takes(model: type[pydantic.BaseModel], field: str, value: Any) -> bool:
-    try:
-        model(**{field: value})
-    except pydantic.ValidationError as error:  # other fields may be missing
-        return all(detail["loc"][:1] != (field,) for detail in error.errors())
+    """Return whether the field takes the value. Validators of the whole model do not run: other values may be missing.
+
+    If a validator of the field fails with an error of its own, the type alone decides.
+    """
+    validators: list[Any] = [
+        VALIDATORS[validator.info.mode](validator.func)
+        for validator in model.__pydantic_decorators__.field_validators.values()
+        if not {field, "*"}.isdisjoint(validator.info.fields)
+    ]
+    create: Any = pydantic.create_model
+    config = {**model.model_config, "alias_generator": None}
+    for used in (validators, []) if validators else ([],):
+        kind: Any = model.model_fields[field].rebuild_annotation()
+        for validator in used:
+            kind = Annotated[kind, validator]
+        try:
+            create(model.__name__, __config__=config, **{field: (kind, ...)}).model_validate({field: value})
+        except pydantic.ValidationError:
+            return False
+        except Exception:  # such as a KeyError, because the validator reads another field
+            continue
+        return True
     return True
 
 
