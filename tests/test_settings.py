@@ -8,7 +8,7 @@ import pytest
 
 import ravestate as rs
 from ravestate.declare.settings import SettingRef
-from ravestate.settings import load_settings, value_of, variable_of
+from ravestate.settings import field_of, load_settings, value_of, variable_of
 from ravestate.yaml_text import load_yaml
 
 
@@ -218,6 +218,15 @@ def test_a_field_with_an_alias_is_set_and_reported_by_its_own_name() -> None:
     assert fault.startswith("setting m.alias_ = 'five'")
     (fault,) = faults([module], {"m": {"alias": 5, "alias_": 6}})
     assert fault == "setting m.alias_ is given twice, by its name and by its alias: write it once"
+
+
+def test_a_field_is_found_by_each_of_its_aliases() -> None:
+    class Aliased(rs.Settings):
+        one: int = pydantic.Field(0, alias="eins")
+        two: int = pydantic.Field(0, validation_alias=pydantic.AliasChoices("zwei", "deux", pydantic.AliasPath("x", 0)))
+
+    found = {key: field_of(Aliased, key) for key in ("one", "eins", "two", "zwei", "deux", "x")}
+    assert found == {"one": "one", "eins": "one", "two": "two", "zwei": "two", "deux": "two", "x": "x"}
 
 
 def test_a_name_that_is_not_a_text_is_an_unknown_setting() -> None:

@@ -13,6 +13,7 @@ from pathlib import PurePath
 from typing import Annotated, Any, cast, get_args, get_origin
 
 import pydantic
+from pydantic.fields import FieldInfo
 
 from ravestate.declare.module import Module
 from ravestate.declare.settings import SettingRef
@@ -168,7 +169,12 @@ def value_of(text: str, model: type[pydantic.BaseModel], field: str, parse: Call
 def field_of(model: type[pydantic.BaseModel], key: str) -> str:
     """Return the name of the field that has the name or the alias `key`; if there is none, return `key` itself."""
     fields = model.model_fields.items()
-    return next((name for name, field in fields if key in (name, field.alias, field.validation_alias)), key)
+    return next((name for name, field in fields if key == name or key in _aliases(field)), key)
+
+
+def _aliases(field: FieldInfo) -> Collection[Any]:
+    alias = field.validation_alias
+    return (field.alias, *(alias.choices if isinstance(alias, pydantic.AliasChoices) else (alias,)))
 
 
 def from_folder(value: Any, model: type[pydantic.BaseModel], field: str, folder: PurePath) -> Any:
