@@ -180,7 +180,8 @@ def _aliases(field: FieldInfo) -> Collection[Any]:
 def from_folder(value: Any, model: type[pydantic.BaseModel], field: str, folder: PurePath) -> Any:
     """Return a field's value from a file in `folder`, with the folder in front of each relative path.
 
-    A `NameOrPath` is a path if it begins with ``./`` or ``../``, or names a file in the folder.
+    A `NameOrPath` is a path if it begins with ``./`` or ``../``, or names a file in the folder. An empty text stays
+    empty.
     """
     info = model.model_fields.get(field)
     return (
@@ -200,7 +201,7 @@ def _located(value: Any, kinds: Collection[Any], folder: PurePath) -> Any:
             if issubclass(model, pydantic.BaseModel):
                 return {key: from_folder(item, model, key, folder) for key, item in items}
         return {key: _located(item, kinds, folder) for key, item in items}
-    if not isinstance(value, str) or not any(issubclass(kind, PurePath) for kind in classes):
+    if not isinstance(value, str) or not value or not any(issubclass(kind, PurePath) for kind in classes):
         return value
     path = os.path.join(folder, os.path.expanduser(value))
     is_name = str in kinds and not value.startswith(("./", "../")) and not os.path.isfile(path)

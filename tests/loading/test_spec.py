@@ -99,6 +99,13 @@ def test_a_path_from_the_command_line_or_the_environment_is_relative_to_the_work
     assert check()[0] == 0
 
 
+def test_an_empty_text_in_an_agent_file_stays_empty(folder: Path) -> None:
+    write(folder / "paths.py", PATHS)
+    agent = "modules: [../paths.py]\nsettings: {paths: {file: '', files: [''], device: ''}}"
+    read = spec.AgentSpec.from_file(write(folder / "sub" / "agent.yaml", agent))
+    assert read.settings == {"paths": {"file": "", "files": [""], "device": ""}}
+
+
 @pytest.mark.parametrize("key", ["file", "datei"])
 def test_an_alias_in_an_agent_file_has_no_precedence_over_other_sources(
     key: str, folder: Path, monkeypatch: pytest.MonkeyPatch
