@@ -8,7 +8,7 @@ import pytest
 
 import ravestate as rs
 from ravestate.declare.settings import SettingRef
-from ravestate.settings import load_settings, value_of, variable_of
+from ravestate.settings import field_of, load_settings, value_of, variable_of
 from ravestate.yaml_text import load_yaml
 
 
@@ -140,6 +140,45 @@ def test_a_text_is_parsed_only_if_its_field_takes_more_than_text(
     assert value_of(text, model, field, lambda text: load_yaml(text, "--set")) == value
 
 
+class Checked(rs.Settings):
+    low: int = 0
+    label: str | None = None
+    names: tuple[str, ...] = ()
+    after: str | None = None
+
+    @pydantic.model_validator(mode="before")
+    @classmethod
+    def ordered(cls, values: dict[str, Any]) -> dict[str, Any]:
+        if values["low"] > 3:
+            raise ValueError("low must be at most 3")
+        return values
+
+    @pydantic.field_validator("names", mode="before")
+    @classmethod
+    def split(cls, value: Any) -> Any:
+        return tuple(value.split()) if isinstance(value, str) else value
+
+    @pydantic.field_validator("after")
+    @classmethod
+    def differs(cls, value: str | None, info: pydantic.ValidationInfo) -> str | None:
+        return value if value != info.data["label"] else None
+
+
+@pytest.mark.parametrize(
+    ("field", "text", "value"),
+    [
+        ("label", "12", "12"),
+        ("label", "null", None),
+        ("low", "12", 12),
+        ("names", "12", "12"),  # its validator takes a text
+        ("names", "[a]", ["a"]),
+        ("after", "12", "12"),  # its validator reads another field
+    ],
+)
+def test_how_a_text_is_parsed_does_not_depend_on_other_fields(field: str, text: str, value: object) -> None:
+    assert value_of(text, Checked, field, lambda text: load_yaml(text, "--set")) == value
+
+
 def test_an_environment_variable_has_the_name_of_its_module_and_field() -> None:
     assert variable_of("my-server", "address") == "RAVESTATE_MY_SERVER_ADDRESS"
     found = load_settings([my_server], None, {"RAVESTATE_MY_SERVER_ADDRESS": "here"})
@@ -179,6 +218,15 @@ def test_a_field_with_an_alias_is_set_and_reported_by_its_own_name() -> None:
     assert fault.startswith("setting m.alias_ = 'five'")
     (fault,) = faults([module], {"m": {"alias": 5, "alias_": 6}})
     assert fault == "setting m.alias_ is given twice, by its name and by its alias: write it once"
+
+
+def test_a_field_is_found_by_each_of_its_aliases() -> None:
+    class Aliased(rs.Settings):
+        one: int = pydantic.Field(0, alias="eins")
+        two: int = pydantic.Field(0, validation_alias=pydantic.AliasChoices("zwei", "deux", pydantic.AliasPath("x", 0)))
+
+    found = {key: field_of(Aliased, key) for key in ("one", "eins", "two", "zwei", "deux", "x")}
+    assert found == {"one": "one", "eins": "one", "two": "two", "zwei": "two", "deux": "two", "x": "x"}
 
 
 def test_a_name_that_is_not_a_text_is_an_unknown_setting() -> None:

@@ -89,6 +89,24 @@ def test_keys_may_be_equal_in_different_mappings_or_differ_by_type() -> None:
     ]
 
 
+def test_a_mapping_may_merge_several_others() -> None:
+    text = "x: &x {a: 1}\ny: &y {b: 2}\nz:\n  <<: *x\n  <<: *y\n  c: 3"
+    assert load_yaml(text, "file.yaml")["z"] == {"a": 1, "b": 2, "c": 3}
+    assert load_yaml("x: &x {a: 1, b: 1}\nz: {<<: *x, a: 2}", "file.yaml")["z"] == {"a": 2, "b": 1}
+
+
+@pytest.mark.parametrize(
+    ("first", "second"),
+    [("1", "0x1"), ("yes", "true"), ("1", "1.0"), ("1", "on"), ("~", "null")],
+)
+def test_equal_keys_are_refused_in_any_spelling(first: str, second: str) -> None:
+    text = f"a: 1\n{first}: b\n{second}: c"
+    with pytest.raises(DeclarationError) as caught:
+        load_yaml(text, "file.yaml")
+    assert str(caught.value) == f"file.yaml:3: {second!r} is the same key as {first!r} in line 2: write it once"
+    assert compose_yaml(text, "file.yaml") is not None  # there, each scalar is a text
+
+
 READERS: dict[str, Callable[[Path], object]] = {
     "types": lambda path: read_types([path]),
     "phrases": lambda path: PhraseBook.load([path]),

@@ -13,6 +13,7 @@ from pathlib import PurePath
 from typing import Annotated, Any, cast, get_args, get_origin
 
 import pydantic
+from pydantic.fields import FieldInfo
 
 from ravestate.declare.module import Module
 from ravestate.declare.settings import SettingRef
@@ -20,6 +21,14 @@ from ravestate.declare.wording import short
 from ravestate.errors import DeclarationError, DeclarationErrors, nearest
 
 TEXT = (str, pydantic.SecretStr)
+
+VALIDATORS: dict[str, Callable[[Any], Any]] = {
+    "before": pydantic.BeforeValidator,
+    "after": pydantic.AfterValidator,
+    "plain": pydantic.PlainValidator,
+    "wrap": pydantic.WrapValidator,
+}
+"""The annotation for each mode of ``pydantic.field_validator``."""
 
 NameOrPath = Annotated[str, PurePath]
 """The type of a setting that takes a name or a path, such as a microphone's name or a sound file."""
@@ -160,13 +169,19 @@ def value_of(text: str, model: type[pydantic.BaseModel], field: str, parse: Call
 def field_of(model: type[pydantic.BaseModel], key: str) -> str:
     """Return the name of the field that has the name or the alias `key`; if there is none, return `key` itself."""
     fields = model.model_fields.items()
-    return next((name for name, field in fields if key in (name, field.alias, field.validation_alias)), key)
+    return next((name for name, field in fields if key == name or key in _aliases(field)), key)
+
+
+def _aliases(field: FieldInfo) -> Collection[Any]:
+    alias = field.validation_alias
+    return (field.alias, *(alias.choices if isinstance(alias, pydantic.AliasChoices) else (alias,)))
 
 
 def from_folder(value: Any, model: type[pydantic.BaseModel], field: str, folder: PurePath) -> Any:
     """Return a field's value from a file in `folder`, with the folder in front of each relative path.
 
-    A `NameOrPath` is a path if it begins with ``./`` or ``../``, or names a file in the folder.
+    A `NameOrPath` is a path if it begins with ``./`` or ``../``, or names a file in the folder. An empty text stays
+    empty.
     """
     info = model.model_fields.get(field)
     return (
@@ -186,7 +201,7 @@ def _located(value: Any, kinds: Collection[Any], folder: PurePath) -> Any:
             if issubclass(model, pydantic.BaseModel):
                 return {key: from_folder(item, model, key, folder) for key, item in items}
         return {key: _located(item, kinds, folder) for key, item in items}
-    if not isinstance(value, str) or not any(issubclass(kind, PurePath) for kind in classes):
+    if not isinstance(value, str) or not value or not any(issubclass(kind, PurePath) for kind in classes):
         return value
     path = os.path.join(folder, os.path.expanduser(value))
     is_name = str in kinds and not value.startswith(("./", "../")) and not os.path.isfile(path)
@@ -205,10 +220,28 @@ def _kinds(annotation: Any) -> Iterator[Any]:
 
 
 def _takes(model: type[pydantic.BaseModel], field: str, value: Any) -> bool:
-    try:
-        model(**{field: value})
-    except pydantic.ValidationError as error:  # other fields may be missing
-        return all(detail["loc"][:1] != (field,) for detail in error.errors())
+    """Return whether the field takes the value. Validators of the whole model do not run: other values may be missing.
+
+    If a validator of the field fails with an error of its own, the type alone decides.
+    """
+    validators: list[Any] = [
+        VALIDATORS[validator.info.mode](validator.func)
+        for validator in model.__pydantic_decorators__.field_validators.values()
+        if not {field, "*"}.isdisjoint(validator.info.fields)
+    ]
+    create: Any = pydantic.create_model
+    config = {**model.model_config, "alias_generator": None}
+    for used in (validators, []) if validators else ([],):
+        kind: Any = model.model_fields[field].rebuild_annotation()
+        for validator in used:
+            kind = Annotated[kind, validator]
+        try:
+            create(model.__name__, __config__=config, **{field: (kind, ...)}).model_validate({field: value})
+        except pydantic.ValidationError:
+            return False
+        except Exception:  # such as a KeyError, because the validator reads another field
+            continue
+        return True
     return True
 
 

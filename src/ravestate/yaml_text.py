@@ -2,7 +2,7 @@
 
 A few lines of aliases can stand for billions of values ("billion laughs"), and deep nesting exhausts the
 stack. The loaders here refuse both immediately. If a mapping has a key twice, YAML itself would lose the first value
-without a word.
+without a word. Keys such as ``1`` and ``0x1`` are equal for `load_yaml`; for `compose_yaml`, they are two texts.
 """
 
 from __future__ import annotations
@@ -25,6 +25,11 @@ DIGITS = 300
 
 LARGEST = 100_000
 """The maximum number of values in a YAML text. Each alias counts as all the values that it stands for."""
+
+MERGE = "tag:yaml.org,2002:merge"
+
+RESPELT = tuple(f"tag:yaml.org,2002:{kind}" for kind in ("bool", "int", "float", "null", "timestamp"))
+"""The tags of the values that have several spellings, such as ``1`` and ``0x1``."""
 
 
 def load_yaml(text: str, name: str) -> Any:
@@ -72,7 +77,7 @@ class _Bounded(Composer):
         self.depth -= 1
         if not isinstance(event, yaml.AliasEvent):
             if isinstance(node, yaml.MappingNode):
-                _refuse_repeated_keys(node)
+                self._refuse_repeated_keys(node)
             self.count += 1
             sizes[event.anchor] = self.count - before
         elif event.anchor in sizes:
@@ -82,6 +87,23 @@ class _Bounded(Composer):
         if self.count > LARGEST:
             raise _RefusedError(f"more than {LARGEST:,} values once the aliases are followed", event)
         return node
+
+    def _refuse_repeated_keys(self, mapping: yaml.MappingNode) -> None:
+        """Refuse equal keys, even in different spellings. A mapping may have several merge keys (``<<``)."""
+        first: dict[object, yaml.ScalarNode] = {}
+        for key, _ in cast("list[tuple[yaml.Node, yaml.Node]]", mapping.value):
+            if not isinstance(key, yaml.ScalarNode) or key.tag == MERGE:
+                continue
+            value: object = (key.tag, key.value)
+            if key.tag in RESPELT and isinstance(self, SafeConstructor):
+                value = cast("Any", self).construct_object(key)
+            if value in first:
+                line, spelling = first[value].start_mark.line + 1, first[value].value
+                found = f"{key.value!r} is here twice (first in line {line}): write it once"
+                if spelling != key.value:
+                    found = f"{key.value!r} is the same key as {spelling!r} in line {line}: write it once"
+                raise _RefusedError(found, key)
+            first[value] = key
 
 
 class _Values(SafeConstructor):
@@ -135,16 +157,6 @@ if yaml.__with_libyaml__:
 class _RefusedError(yaml.MarkedYAMLError):
     def __init__(self, problem: str, place: Any) -> None:
         super().__init__(None, None, problem, place.start_mark)
-
-
-def _refuse_repeated_keys(mapping: yaml.MappingNode) -> None:
-    lines: dict[tuple[str, str], int] = {}
-    for key, _ in cast("list[tuple[yaml.Node, yaml.Node]]", mapping.value):
-        if isinstance(key, yaml.ScalarNode):
-            name = (key.tag, key.value)
-            if name in lines:
-                raise _RefusedError(f"{key.value!r} is here twice (first in line {lines[name]}): write it once", key)
-            lines[name] = key.start_mark.line + 1
 
 
 def _fault(error: yaml.YAMLError, text: str, name: str) -> DeclarationError:

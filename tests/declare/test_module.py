@@ -196,6 +196,36 @@ def test_a_function_that_does_not_take_exactly_the_context_is_refused(demo: rs.M
     assert demo.rule(when=demo.signal("ok"))(takes_any).name == "demo:takes_any"
 
 
+def test_the_arguments_of_a_decorated_function_are_those_of_the_wrapper(demo: rs.Module) -> None:
+    def inner(ctx: object, text: str) -> str:
+        return text
+
+    @functools.wraps(inner)
+    def fills_in(ctx: object) -> str:
+        return inner(ctx, "text")
+
+    @functools.wraps(do)
+    def wants_more(ctx: object, text: str) -> None:
+        do(ctx)
+
+    go = demo.signal("go")
+    assert demo.rule(when=go)(fills_in).name == "demo:inner"
+    refused("gets one argument, the context: write def do(ctx)", lambda: demo.rule(when=go)(wants_more))
+
+
+def test_a_function_whose_annotations_cannot_be_evaluated_can_become_a_rule(demo: rs.Module) -> None:
+    class Lazy:
+        """A callable object whose signature raises what an annotation raises in Python 3.14."""
+
+        @property
+        def __signature__(self) -> inspect.Signature:
+            raise NameError("name 'OnlyForTypeCheckers' is not defined")
+
+        def __call__(self, ctx: object) -> None: ...
+
+    assert demo.rule(when=demo.signal("go"), name="lazy")(Lazy()).name == "demo:lazy"
+
+
 def test_a_value_that_is_not_a_function_cannot_become_a_rule(demo: rs.Module) -> None:
     go = demo.signal("go")
     refused("@demo.rule(...) must decorate a function, not 3", lambda: demo.rule(when=go)(3))

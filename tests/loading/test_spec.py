@@ -6,6 +6,7 @@ from pathlib import Path
 import pytest
 
 from cli.examples import call, write
+from ravestate.errors import UsageError
 from ravestate.loading import spec
 from ravestate.settings import load_settings
 
@@ -97,6 +98,31 @@ def test_a_path_from_the_command_line_or_the_environment_is_relative_to_the_work
     assert code == 2 and "file 'robin.yaml' does not exist" in out
     monkeypatch.setenv("RAVESTATE_AGENTQA_LIFE", "life.yaml")
     assert check()[0] == 0
+
+
+def test_an_empty_text_in_an_agent_file_stays_empty(folder: Path) -> None:
+    write(folder / "paths.py", PATHS)
+    agent = "modules: [../paths.py]\nsettings: {paths: {file: '', files: [''], device: ''}}"
+    read = spec.AgentSpec.from_file(write(folder / "sub" / "agent.yaml", agent))
+    assert read.settings == {"paths": {"file": "", "files": [""], "device": ""}}
+
+
+def test_a_field_that_a_file_gives_by_its_name_and_its_alias_is_reported(folder: Path) -> None:
+    write(folder / "paths.py", PATHS)
+    agent = "modules: [./paths.py]\nsettings: {paths: {datei: a.yaml, file: b.yaml}}"
+    file = write(folder / "agent.yaml", agent)
+    with pytest.raises(UsageError) as caught:
+        spec.AgentSpec.from_file(file)
+    assert str(caught.value) == f"{file}: setting paths.file is given twice, as 'datei' and as 'file': write it once"
+
+
+def test_a_later_file_may_give_a_field_by_another_name(folder: Path) -> None:
+    write(folder / "paths.py", PATHS)
+    read = spec.AgentSpec()
+    names = read.read(write(folder / "a.yaml", "modules: [./paths.py]\nsettings: {paths: {datei: a.txt}}"))
+    read.load(names + read.read(write(folder / "b.yaml", "settings: {paths: {file: b.txt}}")))
+    read.check()
+    assert read.settings == {"paths": {"file": str(folder / "b.txt")}}
 
 
 @pytest.mark.parametrize("key", ["file", "datei"])

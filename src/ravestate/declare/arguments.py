@@ -82,12 +82,14 @@ def check_function(function: object, title: str, *, named: bool, where: str, dec
         raise DeclarationError(
             f"{where} is a generator, but a rule returns only once: use ctx[slot] = value instead of yield"
         )
+    try:  # the engine calls the decorated function, so the signature of the function inside does not count
+        signature = inspect.signature(function, follow_wrapped=False)
+    except Exception:  # a function of C has no signature; Python 3.14 may fail to evaluate an annotation
+        return
     try:
-        inspect.signature(function).bind(None)
+        signature.bind(None)
     except TypeError:
         raise DeclarationError(f"{where} gets one argument, the context: write def {title}(ctx)") from None
-    except ValueError:  # a function without a signature, for instance of C
-        pass
 
 
 def condition(value: object, what: str, where: str, home: str) -> Condition:

@@ -50,7 +50,7 @@ class AgentSpec:
     patience: float = 1.0
     faults: list[str] = field(default_factory=list[str])
     _read: list[tuple[str, str, Any, Path]] = field(default_factory=list[tuple[str, str, Any, Path]])
-    """The settings from files, in order: module, key, value, and the folder of the file. `load` takes them."""
+    """The settings from files, in order: module, key, value, and the file. `load` takes them."""
 
     @classmethod
     def from_file(cls, path: Path) -> AgentSpec:
@@ -86,7 +86,7 @@ class AgentSpec:
         if not isinstance(modules, list) or not all(isinstance(m, str) for m in cast("list[Any]", modules)):
             wrong.append(f"modules must be a list of names, not {short(said['modules'])}")
             modules = []
-        self._read_settings(_filled(said.get("settings") or {}, wrong), path.parent, wrong)
+        self._read_settings(_filled(said.get("settings") or {}, wrong), path, wrong)
         for key, fits, kind in NUMBERS:
             if key in said:
                 if fits(said[key]):
@@ -116,10 +116,16 @@ class AgentSpec:
             if module not in self.modules:
                 self.modules.append(module)
         models = {module.name: module.settings for module in with_required(self.modules)}
-        for name, key, value, folder in self._read:
+        first: dict[tuple[Path, str, str], str] = {}  # file, module, field → the name that the file uses first
+        for name, said, value, file in self._read:
+            key = said
             if (model := models.get(name)) is not None:
-                key = field_of(model, key)
-                value = from_folder(value, model, key, folder)
+                key = field_of(model, said)
+                value = from_folder(value, model, key, file.parent)
+            if (before := first.setdefault((file, name, key), said)) != said:
+                self.faults.append(
+                    f"{file}: setting {name}.{key} is given twice, as {before!r} and as {said!r}: write it once"
+                )
             if variable_of(name, key) not in os.environ:  # the environment overrides a file
                 self.settings[name][key] = value
         self._read.clear()
@@ -159,7 +165,7 @@ class AgentSpec:
             self.faults += map(str, faults.exceptions)
         raise UsageError("\n".join(self.faults))
 
-    def _read_settings(self, settings: Any, folder: Path, wrong: list[str]) -> None:
+    def _read_settings(self, settings: Any, file: Path, wrong: list[str]) -> None:
         if not isinstance(settings, Mapping):
             wrong.append(f"settings must map a module to its settings, not {short(settings)}")
             return
@@ -169,7 +175,7 @@ class AgentSpec:
                 continue
             self.settings.setdefault(str(module), {})
             self._read += [
-                (str(module), str(key), value, folder) for key, value in cast("Mapping[Any, Any]", values).items()
+                (str(module), str(key), value, file) for key, value in cast("Mapping[Any, Any]", values).items()
             ]
 
 
