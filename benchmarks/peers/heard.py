@@ -14,9 +14,13 @@ from ravestate.modules.platform.voiceio import sound
 from ravestate.modules.platform.voiceio.synthesiser import Spoken, Synthesiser
 
 PIECE, STEP = 480, 48
-"""The number of samples of a piece to look for in the file (20 ms), and of samples between two pieces (2 ms)."""
+"""The length of a piece of a sentence (20 ms), and the distance between the ends of two pieces (2 ms), in samples.
+
+The file of the loudspeaker is searched for the pieces.
+"""
 LOUD = 300
-"""The minimum level of a piece. A piece that is at least this loud occurs in the file only if its sentence does."""
+"""A piece counts only if its greatest amplitude is above this level. Such a piece is in the file only if its sentence
+is."""
 FRAME = 240
 """The number of samples of a frame, for measuring its power: 10 ms."""
 
@@ -36,10 +40,10 @@ def noted() -> Iterator[list[Spoken]]:
 
 
 def heard_words(story: str, sentences: Sequence[Spoken], played: bytes) -> str:
-    """Return the part of a story of which at least half of the last word is in a sound.
+    """Return a story up to the last word that the user heard. A word counts if at least half of its sound was played.
 
-    The sound has the samples of the synthesiser unchanged, so the place of the cut is exact. The synthesiser tells where
-    each word begins; a word ends where its sound does.
+    The loudspeaker plays the synthesiser's samples unchanged. So the last loud piece that was played is found to within
+    2 ms. The synthesiser gives the time at which each word begins, and `_length` finds where its sound ends.
 
     Args:
         story: The text.
@@ -61,7 +65,7 @@ def heard_words(story: str, sentences: Sequence[Spoken], played: bytes) -> str:
 
 
 def _until(pcm: bytes, played: bytes) -> int:
-    """Return the samples of a sentence after its beginning until the last one that was played."""
+    """Return how many samples of a sentence lie before the end of its last loud piece that was played; 0 if none was."""
     for end in range(len(pcm) // 2, PIECE, -STEP):
         piece = pcm[2 * (end - PIECE) : 2 * end]
         if np.abs(sound.samples(piece).astype(int)).max() > LOUD and piece in played:
@@ -70,7 +74,7 @@ def _until(pcm: bytes, played: bytes) -> int:
 
 
 def _length(samples: sound.Samples) -> int:
-    """Return the samples of a word until its power falls below a hundredth of the word's greatest power."""
+    """Return the number of samples until a word's power stays below a hundredth of its greatest power."""
     frames = samples[: len(samples) // FRAME * FRAME].reshape(-1, FRAME).astype(float)
     if not len(frames):
         return len(samples)

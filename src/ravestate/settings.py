@@ -151,10 +151,14 @@ def _from_environment(name: str, model: type[pydantic.BaseModel], variables: Map
 def value_of(text: str, model: type[pydantic.BaseModel], field: str, parse: Callable[[str], Any]) -> Any:
     """Convert a text from the environment or from ``--set`` to a value for `field`.
 
-    A text field gets the text itself, and any other field gets the result of `parse`. The field gets the text as well
-    if `parse` raises a ValueError, or if the field takes the text but not the result: ``12`` is a text for
-    ``str | None`` and for a path, and a number for ``str | int``. If the result is a text, too, the field gets the
-    whole text, because `parse` removes ``#5`` from ``Room #5``.
+    A text field gets the text itself. Any other field gets the result of `parse`, except in three cases, in which the
+    field gets the text:
+
+    - `parse` raises a ValueError.
+    - The field takes the text, but not the result. So ``12`` is a text for ``str | None`` and for a path, but a number
+      for ``str | int``.
+    - The field takes the text, the result is a text as well, and `text` does not begin with a quotation mark. The result
+      may lack a part of the text: YAML removes ``#5`` from ``Room #5``.
     """
     if cast("Any", model.model_fields[field].annotation) in TEXT:
         return text

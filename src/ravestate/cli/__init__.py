@@ -1,6 +1,6 @@
 """The command line: ``ravestate COMMAND ...``, one file for each command.
 
-Exit codes: 0 for success, 1 if the agent has faults or fails, 2 for wrong use. A user's mistake produces a message,
+Exit codes: 0 for success, 1 if the agent has faults or fails, 2 for wrong use, 130 after Ctrl-C. A user's mistake produces a message,
 never a traceback.
 """
 
@@ -103,8 +103,8 @@ def script() -> int:
     """Run the command ``ravestate``, and end the process.
 
     At its end, the interpreter stops the remaining threads in the middle of their work. If a thread is inside a C++
-    library, for instance to load a model, stopping it aborts the process. So this function ends the process itself,
-    after everything else has been cleaned up. It waits for threads no longer than `LAST_GRACE`, which is enough for
+    library, for instance to load a model, stopping it aborts the process. So if a daemon thread is left, this
+    function ends the process itself, after everything else has been cleaned up. It waits for threads no longer than `LAST_GRACE`, which is enough for
     functions that save something.
     """
     import atexit
@@ -131,7 +131,7 @@ def script() -> int:
 
 
 def _open_streams() -> None:
-    """Open closed standard streams on the null device. Show ``?`` for a character that the output cannot encode."""
+    """Open closed standard streams on the null device. Show ``?`` for a character that stdout cannot encode."""
     import os
 
     for name, mode in (("stdin", "r"), ("stdout", "w"), ("stderr", "w")):

@@ -74,8 +74,11 @@ class Spiked:
 
 @dataclass(slots=True)
 class Ended:
-    """A report of the outcome of a run, if the engine has `report_ends`. ``fired`` is false if the run resigned, or if
-    it failed or was wiped before it wrote a slot. An interrupted run has fired, even if it failed afterwards."""
+    """A report of the outcome of a run, if the engine has `report_ends`.
+
+    ``fired`` is false if the run resigned. It is also false if the run failed, or lost its spike by a `Wipe`, before it
+    wrote a slot. An interrupted run has fired, even if it failed afterwards.
+    """
 
     run: int
     rule: str

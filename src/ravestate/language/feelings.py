@@ -55,7 +55,7 @@ def feelings(sentences: Sequence[str], names: Collection[str] = ()) -> dict[str,
 
 
 def clauses(sentences: Sequence[str], names: Collection[str] = ()) -> list[str]:
-    """Return the texts that `feelings` compares with the examples: the sentences and their clauses."""
+    """Return all texts that `feelings` may compare with the examples: the sentences and their clauses."""
     spoken = [addressed(sentence, names) for sentence in sentences]
     return [*spoken, *(clause for sentence in spoken for clause in _clauses(sentence, alone=False))]
 

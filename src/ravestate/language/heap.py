@@ -13,7 +13,8 @@ SETTLED = 1.0
 _OPTIONS = ((-8, "MALLOC_ARENA_MAX", 2), (-3, "MALLOC_MMAP_THRESHOLD_", 2**19))
 """Options of glibc: the number in malloc.h, the environment variable and the value.
 
-The first option is the maximum number of heaps. The second is the size in bytes from which a block is kept elsewhere.
+The first option is the maximum number of heaps. The second is a size in bytes: glibc keeps blocks of at least this size
+outside the heaps.
 """
 
 _lock = threading.Lock()

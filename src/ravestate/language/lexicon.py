@@ -23,7 +23,7 @@ FREQUENT = 5000
 COMMON = 15_000
 """A word that may be a name counts as an ordinary word if its count in lower case is at least this."""
 RARE = 50
-"""A word that is not in the dictionary counts as a name if its count is at most this."""
+"""A word counts as rare if its count is at most this, and it is not an ordinary word of the dictionary."""
 DOUBLED = 20
 """The factor by which swapped and doubled letters are more frequent than other typing errors."""
 SHORTEST = 4
@@ -101,7 +101,7 @@ class Lexicon:
         return word in self._counts or word in self._ordinary or word in self._names or word in _BRITISH_WORDS
 
     def rare(self, word: str) -> bool:
-        """Return whether `word`, in lower case, is missing from the dictionary and hardly occurs in the subtitles."""
+        """Return whether `word`, in lower case, is no ordinary word of the dictionary and hardly occurs in subtitles."""
         return word not in self._ordinary and self.count(word) <= RARE
 
     def name(self, word: str) -> str:
@@ -139,7 +139,11 @@ class Lexicon:
 
     @staticmethod
     def _slip(word: str, other: str) -> bool:
-        """Return whether `word` is a likely typing error for `other`. A short word must have no wrong letter."""
+        """Return whether `word` is a likely typing error for `other`.
+
+        In a short word, only swapped, doubled and missing letters count. The first letter may be wrong only if letters
+        are swapped.
+        """
         if other[0] != word[0] and sorted(other) != sorted(word):
             return False
         if len(word) == len(other):
@@ -155,7 +159,11 @@ def _american(word: str) -> set[str]:
 
 
 def _dictionary() -> tuple[frozenset[str], dict[str, str], dict[str, str]]:
-    """Return the dictionary's ordinary words, its names, and the words that are both. Names have keys in lower case."""
+    """Return the dictionary's ordinary words, the names, and the dictionary's words that are both.
+
+    Names have keys in lower case. The names are those of the dictionary, together with days and months. They are
+    without ordinary words, the plurals of ordinary words, and `_NO_NAMES`.
+    """
     spec = find_spec("spylls")
     if spec is None or spec.origin is None:
         raise ImportError("No module named 'spylls'")

@@ -88,7 +88,7 @@ class Move:
 
     @property
     def listens(self) -> bool:
-        """Whether the user surely wants a listener, and asks nothing. If so, modules should not look for facts."""
+        """Whether the move is sure, and suits a statement. If so, modules should not look for facts."""
         return self.sure and self.name in LISTENING
 
 
@@ -96,7 +96,7 @@ class Moves:
     """A classifier that maps an utterance to the next move. Thread-safe; before `load`, it returns no moves."""
 
     def __init__(self, examples: Mapping[str, Sequence[str]], encoder: Encoder | None = None) -> None:
-        """Take the examples, in the format of ``moves.yaml``; load nothing yet."""
+        """Take the examples, in the format of ``moves.yaml``, and read borrowed examples; load no model yet."""
         own = [(text, name, RIDGE) for name, texts in examples.items() if name != "like" for text in texts]
         others = {**bundled("acts").classes, **bundled("feelings").classes}
         for line in examples.get("like", ()):

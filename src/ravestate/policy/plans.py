@@ -29,7 +29,7 @@ class Plans:
 
     Args:
         modules: The modules, each after those that it requires.
-        declared: The rules of the modules. A context may add rules that are in none of the modules.
+        declared: The rules: those of the modules, and those that a context has added.
         settings: The settings by module name. A module without an entry has its default settings.
         faults: Faults that the caller found.
 
@@ -116,7 +116,7 @@ NO_INFORMATION = 1e-9  # the utility of a clause without information, in nats: a
 def _assign_utilities(signals: Sequence[SignalPlan], rules: Sequence[RulePlan], causes: Causes) -> Completion:
     """Set the utility, the base utility and the least pathway of every clause, and mark the cyclic clauses.
 
-    Return the graph in which clauses are completed. `Pathways` uses it to list the clauses' other pathways.
+    Return the graph that completes clauses to pathways. From this graph, `Pathways` lists the clauses' other pathways.
     """
     completion = Completion(signals, rules, causes)
     least = Least(completion)

@@ -18,7 +18,10 @@ if TYPE_CHECKING:
 GRACE = 5.0  # a cancelled rule has this many seconds to clean up; after that, its run counts as ended
 
 CLEANING = 10
-"""A cancelled rule has this many turns of the event loop for its last writes, before any other rule continues."""
+"""Cancelled rules have this many turns of the event loop for their last writes, before any other rule continues.
+
+If several rules are cancelled, the turns count from the first cancellation.
+"""
 
 log = logging.getLogger("ravestate")
 
@@ -68,7 +71,10 @@ class AsyncRules:
             self._functions.finish(ctx, end.result, None)
 
     def _keep(self, task: EagerTask) -> None:
-        """Keep a spare task for the next function, unless a function has spoilt it (`EagerTask.spoilt`)."""
+        """Keep a task as the spare for the next function.
+
+        Close the task if there is a spare already, or if a function has spoilt the task (`EagerTask.spoilt`).
+        """
         if self._spare is None and not task.spoilt:
             self._spare = task
         else:

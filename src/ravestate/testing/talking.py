@@ -28,7 +28,7 @@ class Said:
         speaker: ``user`` or ``agent``.
         text: The user's words, as speech recognition heard them, or those of the agent's words that the user heard.
         start, end: The times at which the sound began and ended (seconds on the recording's time line).
-        cut: Whether the user interrupted the utterance.
+        cut: Whether the agent's utterance was cut off, because the user interrupted it or the agent ended.
         filler: Whether the utterance only filled a pause.
     """
 
@@ -60,7 +60,8 @@ def talk(
         modules: The agent's modules, without `voiceio`, which `talk` adds.
         settings: Name of a module → the module's settings, as for `Context`.
         seed: The seed of random choices.
-        show: A function that receives each utterance as soon as the utterance is over.
+        show: A function that receives each utterance when it is over. While the agent speaks, it receives the user's
+            utterances only after the agent's utterance.
         record: A function that receives each record of the trace.
 
     Raises:
@@ -104,7 +105,10 @@ def talk(
 
 
 def transcript(note: Callable[[Said], None]) -> Module:
-    """Return a module that calls `note` with each utterance of both sides as soon as it is over."""
+    """Return a module that calls `note` with each utterance of both sides when it is over.
+
+    While the agent speaks, an utterance of the user waits until the agent's utterance is over.
+    """
     from ravestate.modules import rawio, voiceio
 
     witness = Module("transcript", requires=[voiceio])
@@ -112,7 +116,7 @@ def transcript(note: Callable[[Said], None]) -> Module:
     waiting: list[Said] = []
 
     def show() -> None:
-        """Pass the agent's utterances that are over to `note`. If the agent is silent, add the user's."""
+        """Call `note` with the agent's utterances that are over. If the agent is then silent, add the user's."""
         for one in [one for one in begun if one.over]:
             begun.remove(one)
             if one.heard.strip():
@@ -125,7 +129,7 @@ def transcript(note: Callable[[Said], None]) -> Module:
 
     @witness.rule(when=voiceio.utterance.max_age(None).detached(), background=True)
     async def hear_user(ctx: RuleContext) -> None:
-        """Pass an utterance of the user to `note`, after the utterance of the agent that it interrupts."""
+        """Call `note` with an utterance of the user, after the utterance of the agent that it interrupts."""
         one = ctx.payload(voiceio.utterance)
         waiting.append(Said("user", one.text, one.start, one.end))
         show()
@@ -140,12 +144,12 @@ def transcript(note: Callable[[Said], None]) -> Module:
         background=True,
     )
     async def hear_agent(ctx: RuleContext) -> None:
-        """Pass the agent's utterances that are over to `note`."""
+        """Call `note` with the utterances that wait, because an utterance of the agent is over."""
         show()
 
     @witness.rule(when=shutdown)
     async def end(ctx: RuleContext) -> None:
-        """Pass the remaining utterances to `note`."""
+        """Call `note` with the remaining utterances."""
         show()  # the end of the agent has cut off its speech
         begun.clear()
         show()

@@ -80,7 +80,7 @@ _FOUGHT_FOR = word_set(
 
 
 def kind_at(words: Sequence[Word], index: int) -> QuestionWord | None:
-    """Return the kind of question of the word at `index`; None for other words.
+    """Return the kind of question that the word at `index` asks; None if it is no question word.
 
     Example: in "how many friends do you have", the word at index 0 asks for an amount.
     """
@@ -112,7 +112,10 @@ def kind_at(words: Sequence[Word], index: int) -> QuestionWord | None:
 
 
 def _asks_what_for(rest: Sequence[Word]) -> bool:
-    """Return whether the clause ends with a *for* that does not belong to the verb: *what do you need that for*."""
+    """Return whether the rest of a clause asks for a reason with *for*: *what do you need that for*.
+
+    The rest must end with *for* after at least two other words, and have no word of `_FOUGHT_FOR`.
+    """
     clause: list[Word] = []
     for word in rest:
         if word.pos == "PUNCT":

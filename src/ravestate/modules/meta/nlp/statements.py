@@ -122,7 +122,10 @@ class _Assertion:
 
     @cached_property
     def _hearsay(self) -> bool:
-        """Whether the statement reports the words of somebody else."""
+        """Whether the statement reports somebody else's words: *Ada says that...*, *I heard that...*, *apparently...*.
+
+        The same is true of words that the speaker did not say: *I didn't say that I am shy*.
+        """
         if self._above is None or self._low & _REPORTS:
             return bool(self._low & _REPORTS)
         said = self._above._clause
@@ -138,7 +141,7 @@ class _Assertion:
 
     @cached_property
     def _conditional(self) -> bool:
-        """Whether the statement is imagined."""
+        """Whether the statement is imagined, in doubt, under a condition, or almost came true."""
         own = self._clause.own
         if self._low & _DOUBTS or any(word.low in _CONDITIONS and word.dep in ("mark", "advmod") for word in own):
             return True
@@ -209,7 +212,7 @@ class _Assertion:
 
     @cached_property
     def _wished(self) -> bool:
-        """Whether the clause says *would like*."""
+        """Whether the clause says *would like*, *would love* or *would prefer*."""
         first = self._clause.chain[0]
         would = any(word.low in ("would", "'d") for word in self._tree.children(first, "aux"))
         return would and lemma_of(first) in ("like", "love", "prefer")
@@ -229,7 +232,13 @@ class _Assertion:
         return not self._low & {"if", "whether"} and self._above._clause.lemma in _KNOWN_AS_TRUE
 
     def _phrases(self, object: Phrase, *, denied: bool) -> Iterator[Phrase]:
-        """Yield the prepositional phrases of a statement, without those that only the other side of a contrast has."""
+        """Yield the phrases that a statement has in its clause, apart from its subject and its object.
+
+        These are the nouns after prepositions and the complements of objects: *we called the dog Rex*. A proper noun
+        that is the object of *name*, *call* or *christen* counts, too. A contrast, as in *not in Bonn, but in Bern*,
+        has an asserted and a denied side. If `denied`, the statement belongs to the denied side. Such a statement has no
+        asserted phrase of a contrast, and of the denied phrases only `object`. Any other statement has no denied phrase.
+        """
         for word in self._clause.own:
             if contrasted_with(self._tree, word) if denied else is_denied(self._tree, word):
                 continue

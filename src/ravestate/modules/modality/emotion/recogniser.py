@@ -23,7 +23,7 @@ SHARED: Mapping[str, Feeling] = {
     "joy": "happy",
     "astonishing": "surprised",
 }
-"""The agent's feeling for each class in ``feelings.yaml``, the strongest class first. Other classes raise no
+"""Class in ``feelings.yaml`` → the agent's feeling, the strongest class first. The file's other classes raise no
 feeling."""
 
 SPOILERS = frozenset({"failure", "anger", "worry"})
@@ -43,14 +43,16 @@ PICTURES: tuple[tuple[Feeling, re.Pattern[str]], ...] = (
 
 
 def recognise(text: str, names: Collection[str] = ()) -> Feeling | None:
-    """Return the feeling that fits `text` (English), or None. The first call loads the sentence model.
+    """Return the feeling that fits `text` (English), or None.
+
+    The first text with a sentence that equals no example loads the sentence model.
 
     Args:
         text: The user's words; the first 2000 characters count.
         names: The agent's names: "Rosie is clever" means the same as "you are clever".
 
     Raises:
-        PlatformError: The sentence model is missing, and the text does not equal an example.
+        PlatformError: The sentence model is missing, and a sentence of the text equals no example.
 
     Example:
         >>> recognise("You are so clever!"), recognise("You are not very clever."), recognise("I passed my exam!")
@@ -69,5 +71,8 @@ def recognise(text: str, names: Collection[str] = ()) -> Feeling | None:
 
 
 def sorrowful(text: str, names: Collection[str] = ()) -> bool:
-    """Return whether a text is sad, worried or angry. The matcher of feelings must be loaded."""
+    """Return whether a text shows one of the `SORROWS`, such as grief, illness, worry or anger.
+
+    The matcher of feelings must be loaded.
+    """
     return not SORROWS.isdisjoint(feelings(heard(text, names), names))

@@ -21,14 +21,15 @@ class Listener(Protocol):
         ...
 
     def fall_silent(self) -> None:
-        """End a growing utterance that no rule will write as a whole."""
+        """End the utterance that is still growing, if there is one: no rule continues it."""
         ...
 
 
 def rest(text: str, pieces: str) -> str | None:
     """Return the part of an utterance that follows its pieces; None if the pieces belong to another utterance.
 
-    Spaces at the ends do not count, because the pieces of a model often end in a space that the utterance lacks.
+    Spaces at the beginning do not count. The pieces of a model often end in a space that the utterance lacks. If the
+    utterance goes on with a letter or a digit there, the pieces belong to another utterance.
 
     Args:
         text: The whole utterance, from ``output``.
@@ -63,7 +64,7 @@ def carry(module: rs.Module, slot: rs.Slot[Any]) -> None:
 
     @module.rule(when=speaking.false.max_age(None).detached(), reads=slot, background=True)
     async def end_piece(ctx: rs.RuleContext) -> None:
-        """End a growing utterance that no rule has written as a whole."""
+        """End the utterance that is still growing, if there is one, when ``speaking`` becomes false."""
         if listener := ctx[slot]:
             listener.fall_silent()
 

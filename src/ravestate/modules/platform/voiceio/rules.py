@@ -48,7 +48,10 @@ if TYPE_CHECKING:
     background=True,
 )
 async def listen(ctx: rs.RuleContext) -> rs.Resign | None:
-    """Open the line. Raise signals when the user begins to speak, speaks articulately, or pauses."""
+    """Open the line. Note when the user begins to speak or pauses, and when another person begins to speak.
+
+    Raise ``spoke_up`` as soon as the sound is certainly speech, not a hum or a cough.
+    """
     settings: Settings = ctx.settings
     line = ctx[rawio.sound]
     if line is None and _is_served(ctx):
@@ -161,7 +164,10 @@ async def take_turn(ctx: rs.RuleContext) -> rs.Resign | None:
 
 @module.rule(when=another_speaks, reads=conversation, emits=(utterance, false_alarm))
 async def take_first_turn(ctx: rs.RuleContext) -> rs.Resign | None:
-    """Handle the first person's turn by itself, because the words of two people are not one sentence."""
+    """Handle the words of the first person, after two people have spoken in one turn.
+
+    The words of two people are not one sentence, so each person gets a turn.
+    """
     talk, turn = ctx[conversation], ctx.payload(another_speaks)
     if talk is None:
         return rs.Resign("the line is closed")
@@ -269,7 +275,7 @@ async def end_growing(ctx: rs.RuleContext) -> rs.Resign | None:
     until=barge_in | utterance | rawio.hush | conversation.changed | rs.shutdown,
 )
 async def voice_it(ctx: rs.RuleContext) -> rs.Resign | None:
-    """Speak an utterance sentence by sentence. In the end, note the part of it that the user heard."""
+    """Speak an utterance sentence by sentence. In the end, note what the user heard of it, unless it is a filler."""
     talk, saying, manner = ctx[conversation], ctx.payload(speech), ctx[prosody]
     if talk is None:
         return rs.Resign("the line is closed")

@@ -17,7 +17,7 @@ BLOCK = 0.02
 
 
 class WavLine:
-    """A line whose microphone plays a recording at the speed of the loop's clock, and then silence.
+    """A line whose microphone plays a recording in the time of the event loop, which may be virtual, and then silence.
 
     Args:
         source: The recording, in any usual format; None for silence.
@@ -86,7 +86,7 @@ class WavLine:
                 pass
 
     def close(self) -> None:
-        """End the line, and write the file.
+        """End the line, and write the file. If the recording never began, write nothing.
 
         Raises:
             PlatformError: The file cannot be written.

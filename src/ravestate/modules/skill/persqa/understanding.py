@@ -27,9 +27,9 @@ EVERYTHING = "everything"
 """The value of `Fact.topic` that stands for all topics."""
 
 SURELY = 0.7
-"""The minimum confidence that a sentence beside others says who the user is."""
+"""If an utterance has several sentences: the minimum confidence that one of them says who the user is."""
 BRIEF = 4
-"""The maximum number of words of an utterance after which the agent may ask about something else."""
+"""The maximum number of words of a mere yes, and of an utterance after which the agent may ask about something else."""
 
 Kind = Literal[
     "nothing",  # nothing that concerns persqa
@@ -43,7 +43,7 @@ Kind = Literal[
     "asked",  # the user asked about themselves
     "asked_told",  # the user asked about something that they said earlier, and that no topic covers
     "asked_words",  # as before, but perhaps the user's own words hold the answer
-    "vouched",  # the user answered the question that tests who they are
+    "vouched",  # the user answered the question that tests who they are, or refused to
     "identified",  # the user said "it's me", perhaps with a name
     "mistaken",  # the user is not the person that the agent takes them for
     "strike",  # the agent should forget some facts
@@ -63,10 +63,13 @@ class Meaning:
     """The topic of the agent's question that the user answers."""
     leave: bool = False
     aloud: bool = True
-    """Whether persqa replies. If the user also asks something, says goodbye or plays a game, another rule replies, and
-    persqa learns the facts silently."""
+    """Whether persqa replies. If not, another rule replies, and persqa learns the facts silently.
+
+    Another rule replies if the user also asks something, says goodbye, is sad, or wants a sum. The same is true of
+    denials that change no known fact.
+    """
     free: tuple[Told, ...] = ()
-    """Free statements that the user makes, asks for, or wants forgotten."""
+    """*Free statements*, which no topic covers: those that the user makes, asks about, or wants forgotten."""
     gone: tuple[Told, ...] = ()
     """Free statements that the user denies or corrects."""
     touched: frozenset[str] = frozenset()
@@ -77,9 +80,9 @@ class Meaning:
     """Whether the name that the user tells is another person's, and not the right spelling of the known name."""
     said: tuple[Told, ...] = ()
     words: tuple[str, ...] = ()
-    """The sentences of the utterance. If the kind is ``asked_words``: the sentence that answers the question."""
+    """The sentences without a question mark; empty if the utterance asks something. If the kind is ``asked_words``: the sentence that answers the question."""
     moved: bool = False
-    """Whether the user shows a feeling, or jokes."""
+    """Whether the user jokes, praises, plays, or shows a feeling that is not calm (`_CALM`)."""
     busy: bool = False
     """Whether the user asks, or tells at some length, something that is no fact about them."""
 
@@ -199,11 +202,14 @@ class _Hearing:
         return self.otherwise(aside)
 
     def is_unsure(self, act: str) -> bool:
-        """Return whether an act is rather the answer to the agent's question: *Rocky*, *Bonn*."""
+        """Return whether the words that were taken for an act rather answer the agent's question: *Rocky*, *Bonn*."""
         return self.answers and self.seen.acts[act].score < 0.9
 
     def otherwise(self, aside: bool) -> Meaning:
-        """Return the meaning of an utterance that states no fact; `aside` says whether it asks, or says goodbye."""
+        """Return the meaning of an utterance that states no fact, or only makes denials that change no known fact.
+
+        `aside` says whether the utterance asks something, or says goodbye.
+        """
         seen, topic, asks = self.seen, self.topic, self.seen.question is not None
         if identity := self.identity():
             return identity
@@ -228,9 +234,11 @@ class _Hearing:
         return all(among(value, self.known.get(NAME, ())) for value in values)
 
     def is_another(self, name: Fact) -> bool:
-        """Return whether a name begins another acquaintance: after a farewell, or with words such as *Peter here*.
+        """Return whether a name shows that another person speaks now.
 
-        A correction does not: *no, I'm Peter*."""
+        The name comes after a farewell, or in words such as *Peter here*. A correction shows no other person: *no, I'm
+        Peter*.
+        """
         known, said = self.known.get(NAME, ()), " ".join(name.values)
         denied = name.gone or self.seen.contrasts or self.seen.yesno.no or "contradiction" in self.acts
         if not known or denied or alike(said, known) or without_opening(self.text):
@@ -259,7 +267,10 @@ class _Hearing:
         return all(other.text.lower() in ("", "it", "that", "this", "none") for other in others)
 
     def correction(self, read: Sequence[str]) -> Correction:
-        """Return the correction of a known fact, or of a free statement, unless it is among the values `read`."""
+        """Return the correction of a known fact or of a free statement.
+
+        A value in `read` is no correction, because the utterance states it as a fact anyway.
+        """
         told = tuple({one.key: one for one in (*self.told, *self.talk.said)}.values())
         return corrected_in(self.reader, self.text, self.talk, told, read, asked=self.pending is not None)
 
@@ -344,7 +355,10 @@ class _Hearing:
         return None
 
     def pointed(self) -> str:
-        """Return the topic of *and my job?*, or of the relative whom the pronoun in *what was his name?* may mean."""
+        """Return the topic of *and my job?*, or the topic of the being whom the pronoun in *what was his name?* may mean.
+
+        This being is a relative, a friend or a pet whose name the agent knows.
+        """
         if found := _ELLIPSIS.match(self.text):
             topic = NOUNS.get(found[1].lower(), "")
             return topic if self.known.get(topic) else ""
@@ -396,7 +410,11 @@ class _Hearing:
         return said.request or "want" in words or bool({"can", "could", "would", "please"} & set(words[:3]))
 
     def matters(self, fact: Fact) -> bool:
-        """Return whether to note a denial: it denies some values, or all values of a topic (*I have no hobby*)."""
+        """Return whether to note a denial. A denial of certain values always counts.
+
+        A denial of a whole topic (*I have no hobby*) does not count for the name. It does not count either for a place
+        that is neither asked for nor known.
+        """
         if fact.values or fact.topic == NAME:
             return bool(fact.values)
         return fact.topic == self.topic or TOPICS[fact.topic].kind != "place" or bool(self.known.get(fact.topic))
@@ -413,7 +431,7 @@ _FEMALE, _MALE = ("mother", "sister", "wife", "daughter"), ("father", "brother",
 _OTHERS = {"his": _FEMALE, "her": _MALE, "its": (*_FEMALE, *_MALE, "friend", "partner", "child")}
 """A pronoun → topics of people whom it cannot mean."""
 _NAMING = frozenset(["i", "me", "name", "call", "called"])
-"""Words that introduce the user's name. Without one of these words, *it's Leipzig* may be about something else."""
+"""Words that introduce the user's name. An utterance without them, such as *it's Leipzig*, may be about something else."""
 _CALM = frozenset(["astonishing", "boredom", "compliment", "insult"])
 """Feelings that do not stop the agent from asking its next question."""
 _NAMES = frozenset(["be", "call", "name"])

@@ -1,4 +1,7 @@
-"""The values of topics: the words that can be a value, and memory's spelling of a value."""
+"""The values of facts about the user: the words that can be a value, and memory's spelling of a value.
+
+A fact has a topic, such as *hobby*, and values, such as *chess*.
+"""
 
 from __future__ import annotations
 
@@ -23,6 +26,8 @@ _DEICTIC = re.compile(
     r"(?:this|that|these|those|it|you|him|her|them|me|us|here|there|(?:any|some|every|no)(?:thing|one|body|where)|none|no)",
     re.IGNORECASE,
 )
+_DOUBLING = re.compile(r"(?:(?:be|re|de|ad|for|up)(?=[^aeiou]))?[^aeiou]*[aeiou][bdgmnpt]|quit")
+"""Verbs with a stressed last syllable, which double their last letter: *run*, *begin*, but not *visit*."""
 
 
 def value_of(text: str, topic: Topic, seen: nlp.Analysis) -> str | None:
@@ -74,7 +79,10 @@ def number_in(text: str) -> str:
 
 def _trimmed(text: str) -> str:
     """Return a text without the punctuation and the emoji around it. A text of emoji alone stays."""
-    kept = [at for at, letter in enumerate(text) if unicodedata.category(letter)[0] in "LN" or letter in "+#"]
+    kinds = [unicodedata.category(letter)[0] for letter in text]
+    kept = [at for at, letter in enumerate(text) if kinds[at] in "LN" or letter in "+#"]
+    while kept and kinds[kept[-1] + 1 :][:1] == ["M"]:  # a sign on the last letter, such as a vowel of Hindi
+        kept.append(kept[-1] + 1)
     return text[kept[0] : kept[-1] + 1] if kept else text.strip(" \"'.,;:!?-_*~()[]{}<>|“”„«»…`\n")
 
 
@@ -86,7 +94,7 @@ def gerund(text: str, seen: nlp.Analysis) -> str:
         verb = found[2].lower()
         if verb.endswith("ing") or (not found[1] and verb not in verbs):
             return found[2]
-        if len(verb) < 6 and re.search(r"(?:[^aeiou]|^)[aeiou][bdgmnpt]$", verb):
+        if _DOUBLING.fullmatch(verb):
             return f"{verb}{verb[-1]}ing"
         return re.sub(r"(?<!e)e$", "", verb) + "ing"
 

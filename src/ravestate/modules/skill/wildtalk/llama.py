@@ -27,7 +27,7 @@ _OWN_MODEL = "--set wildtalk.model_path=/path/to/model.gguf"
 
 
 class LlamaBackend:
-    """A GGUF file, run by llama.cpp in a process that all contexts with the same file share."""
+    """A GGUF file, run by llama.cpp in a process that all contexts with the same file and the same options share."""
 
     def __init__(
         self,
@@ -58,7 +58,7 @@ class LlamaBackend:
         self._loading = asyncio.Lock()
 
     async def load(self, progress: Progress | None = None) -> None:
-        """See `Backend.load`. The model is loaded once per process.
+        """See `Backend.load`. Contexts with the same file and options load the model only once.
 
         Cancelling this call ends the model's process, unless another context waits for it as well.
         """
@@ -135,7 +135,7 @@ def bundled_model() -> Path:
 
 
 def checked_model(path: Path | str) -> Path:
-    """Return the absolute path of the user's model file, which may begin with ``~``.
+    """Return the absolute path of the user's model file. `path` may begin with ``~``.
 
     Raises:
         PlatformError: xllamacpp or the file is missing, or the file is not a GGUF file.

@@ -1,4 +1,8 @@
-"""Follow-ups: after a reply of the bank, the user's next utterance is compared with the follow-ups of the reply's entry.
+"""Find the follow-up that answers what the user says after a reply of the bank.
+
+An entry of the bank (bank.py) has example utterances of the user, and replies to them. A *follow-up* is an entry for
+what the user may say directly after such a reply. So after a reply, the user's next utterance is compared with the
+follow-ups of the reply's entry.
 
 The entry narrows what the utterance can mean, so a lower similarity suffices than in a search of the whole bank. Any form
 of *yes* or *no* matches the follow-up that lists this answer among its utterances.
@@ -34,8 +38,8 @@ DENIED = 0.12
 OTHER_UNIT = 0.08
 """The share that it loses if the utterance names another unit of time: *ten weeks* is not *ten years*."""
 ANSWERED = (0.9, 0.76, 0.7)
-"""The scores of *yes*, *no* and *I don't know*: in up to `BRIEF` words, in up to `LONGER` words, and in a longer or weaker
-answer."""
+"""The scores of *yes*, *no* and *I don't know*, by the length of the utterance: up to `BRIEF` words; up to `LONGER` words;
+more words, or a weak answer such as *nothing really*."""
 BRIEF, LONGER = 3, 8
 RELATED, ANSWERING = 0.64, 0.59
 """The minimum similarity of a statement that keeps the subject; the same for a statement after a question of the agent.
@@ -62,10 +66,13 @@ def follow_up_in(
         bank: The bank.
         state: The state of the conversation.
         seen: The analysis of the utterance.
-        asking: The sentence of the utterance that asks something; only this sentence counts then.
+        asking: The sentence of the utterance that asks something; empty if none does. If there is one, only this sentence
+            counts.
         rival: The most suitable entry of the bank. It beats a follow-up that is doubtful and less similar. If the
-            utterance is short, its meaning depends on the agent's question, so only an equal entry beats a follow-up.
-        dark: Whether the utterance is sad or grave. If so, only follow-ups of dark entries and nearly equal ones count.
+            utterance is short, its meaning depends on the agent's question, so only an entry with exactly these words beats a
+            follow-up.
+        dark: Whether the utterance is sad or grave. If so, a follow-up counts only if its tone is dark, or if one of its
+            examples nearly equals the utterance (`EQUAL`).
     """
     best, score = _nearest(bank, state, seen, asking)
     if best is None or score < LEAST or (score < SURE and "farewell" in seen.acts):
@@ -101,7 +108,9 @@ def _nearest(bank: Bank, state: State, seen: Analysis, asking: str) -> tuple[Mom
 
 
 def rest_of(bank: Bank, state: State, seen: Analysis) -> Moment | None:
-    """Return the follow-up of the last entry for any other statement; None if the user has changed the subject.
+    """Return the last entry's follow-up for statements that fit no other follow-up.
+
+    Return None if there is none, or if the user has changed the subject.
 
     A short utterance keeps the subject. A longer one must resemble the entry or one of its follow-ups.
     """
@@ -139,7 +148,7 @@ def _kind(seen: Analysis) -> str:
 
 
 def _parts(seen: Analysis) -> list[str]:
-    """Return the sentences of an utterance, the whole utterance, and each of them without introductory words."""
+    """Return the first four sentences of an utterance, the whole utterance, and each of these without its lead."""
     texts = [*seen.sentences[:4], seen.text]
     return list(dict.fromkeys([*texts, *filter(None, (_LEAD.sub("", text) for text in texts))]))
 

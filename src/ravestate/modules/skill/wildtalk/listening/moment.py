@@ -13,11 +13,11 @@ ROLE = re.compile(r"\{(\w+)\}")
 
 @dataclass(frozen=True, slots=True)
 class Line:
-    """A phrase with *roles*, its placeholders, in braces."""
+    """A phrase. It may have placeholders in braces, the *roles*: ``How old {are} {they}?``"""
 
     text: str
     roles: frozenset[str]
-    """The roles whose values must be known, in lower case."""
+    """The names of the roles in `text` and `then`, in lower case. The phrase is used only if all their values are known."""
     then: Mapping[str, tuple[str, ...]] = field(default_factory=dict[str, tuple[str, ...]])
     """The kind of the user's answer (``yes``, ``no``, ``unsure`` or ``any``) → the agent's reactions to it."""
     start: str = ""
@@ -45,7 +45,8 @@ class Moment:
     moves: frozenset[str] = frozenset()
     """The moves of a listener (language/moves.py) that the phrases suit."""
     after: str = ""
-    """A tag that the utterance must have, such as ``shown``: the agent has just told a joke."""
+    """A tag that the utterance must have; empty if it needs none. An utterance has the tag ``shown`` directly after the
+    agent's joke, song, story or riddle."""
     least: float = 0.0
     """The minimum confidence in a move at which the phrases may be used."""
     heads: str = ""

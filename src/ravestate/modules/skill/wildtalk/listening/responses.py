@@ -1,6 +1,6 @@
 """Find the replies that suit an utterance: *you can be proud of that*, *what a shame*...
 
-Similar words may need opposite replies: *my goldfish swims upside down* is no joke. A small network (``responses.onnx``)
+Similar words may need opposite replies: *my cat sleeps upside down* is funny, *my goldfish swims upside down* is sad. A small network (``responses.onnx``)
 grades each reply of responses.yaml. It has learnt from the grades that readers gave to such replies.
 ``tools/networks`` has these grades.
 """
@@ -25,7 +25,7 @@ SURE = 1.4
 GENERAL = frozenset(("asks_fact", "asks_feeling", "asks_advice", "asks_favour", "tells_on", "answers", "nonsense"))
 """Kinds of reply that say little. They never take precedence over the bank."""
 KIND = 0.3
-"""The weight of the logarithm of the probability of a reply's kind, beside the grade of the reply."""
+"""A reply's rank is its grade plus this weight times the logarithm of the probability of its kind."""
 LIGHT = ("glad", "funny")
 """The tones of cheerful and funny replies."""
 LONGEST = 300
@@ -41,7 +41,7 @@ class Response:
     grade: float
     """0: it does not suit; 1: it does no harm; 2: it is good."""
     rank: float
-    """The grade, less if the kind is improbable. A kind is judged more reliably than a single reply."""
+    """The grade, lowered for an improbable kind. A kind is judged more reliably than a single reply."""
     kind: Moment
     line: Line
 
@@ -77,7 +77,8 @@ _NETWORK = Grader(Path(__file__).with_name("responses.onnx"))
 def responses_to(phrases: Material, text: str, before: str = "", *, dark: bool) -> list[Response]:
     """Return the replies that suit an utterance, the best first.
 
-    A reply that the network does not know gets the mean grade of its kind. Before the network is loaded, there are none.
+    A reply that the network does not know gets the mean grade of its kind. A kind of which the network knows no reply
+    is left out. Before the network is loaded, there are no replies.
 
     Args:
         phrases: The replies.
@@ -101,7 +102,10 @@ def responses_to(phrases: Material, text: str, before: str = "", *, dark: bool) 
 
 
 def surely_suits(found: list[Response], least: float = SURE) -> bool:
-    """Return whether the best reply takes precedence over the bank, because its grade is at least `least`."""
+    """Return whether the best reply takes precedence over the bank.
+
+    Its grade must be at least `least`, and its kind must not be general.
+    """
     return bool(found) and found[0].grade >= least and not is_general(found[0].kind)
 
 
