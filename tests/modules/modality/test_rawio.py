@@ -20,16 +20,16 @@ class Shown:
     """A listener that keeps a log of what it is shown."""
 
     def __init__(self) -> None:
-        self.log: list[str] = []
+        self.log: list[tuple[str, object]] = []
 
-    def utter(self, text: str) -> None:
-        self.log.append(text)
+    def utter(self, text: str, origin: object = None) -> None:
+        self.log.append((text, origin))
 
-    def grow(self, piece: str) -> None:
-        self.log.append(piece)
+    def grow(self, piece: str, origin: object = None) -> None:
+        self.log.append((piece, origin))
 
-    def fall_silent(self) -> None:
-        self.log.append("silence")
+    def fall_silent(self, origin: object = None) -> None:
+        self.log.append(("silence", origin))
 
 
 def test_equal_inputs_raise_the_signal_each_time() -> None:
@@ -67,13 +67,13 @@ def test_a_rule_that_fails_in_the_middle_of_an_utterance_ends_the_utterance() ->
     rawio.carry(page, page.slot("listener", Shown()))
 
     with simulate(story, page) as sim:
-        sim.say("a story")
+        sim.context.put(rawio.input, "a story", origin="letter")
         sim.advance(1)
         assert sim.read(rawio.speaking)
         sim.advance(1)
         assert not sim.read(rawio.speaking)
         assert [rule for rule, _ in sim.failures] == ["story:listen", "story:tell"]
-        assert sim.read(page.slots[0]).log == ["Once ", "silence"]
+        assert sim.read(page.slots[0]).log == [("Once ", "letter"), ("silence", "letter")]
 
 
 @pytest.mark.parametrize(

@@ -10,17 +10,21 @@ from .names import output, piece, speaking
 
 
 class Listener(Protocol):
-    """The user's side of a conversation: it gets the agent's words."""
+    """The user's side of a conversation: it gets the agent's words.
 
-    def utter(self, text: str) -> None:
+    `origin` is the ``ctx.origin`` of the words: the input that they answer, or None. If utterances grow at the same
+    time, it tells their pieces apart.
+    """
+
+    def utter(self, text: str, origin: object = None) -> None:
         """Show the user a whole utterance of the agent."""
         ...
 
-    def grow(self, piece: str) -> None:
+    def grow(self, piece: str, origin: object = None) -> None:
         """Show the user a piece of an utterance that is still growing."""
         ...
 
-    def fall_silent(self) -> None:
+    def fall_silent(self, origin: object = None) -> None:
         """End a growing utterance that no rule will write as a whole."""
         ...
 
@@ -53,19 +57,19 @@ def carry(module: rs.Module, slot: rs.Slot[Any]) -> None:
     async def show(ctx: rs.RuleContext) -> None:
         """Show each utterance of the agent to the user."""
         if listener := ctx[slot]:
-            listener.utter(ctx.payload(output.changed))
+            listener.utter(ctx.payload(output.changed), ctx.origin)
 
     @module.rule(when=piece.max_age(None).detached(), reads=slot, background=True)
     async def show_piece(ctx: rs.RuleContext) -> None:
         """Show each piece of a growing utterance to the user."""
         if listener := ctx[slot]:
-            listener.grow(ctx.payload(piece))
+            listener.grow(ctx.payload(piece), ctx.origin)
 
     @module.rule(when=speaking.false.max_age(None).detached(), reads=slot, background=True)
     async def end_piece(ctx: rs.RuleContext) -> None:
         """End a growing utterance that no rule has written as a whole."""
         if listener := ctx[slot]:
-            listener.fall_silent()
+            listener.fall_silent(ctx.origin)
 
     @module.rule(
         when=rs.error.max_age(None).detached() & speaking.holds(bool), writes=speaking, detached=True, background=True
