@@ -76,6 +76,31 @@ def test_a_rule_that_fails_in_the_middle_of_an_utterance_ends_the_utterance() ->
         assert sim.read(page.slots[0]).log == [("Once ", "letter"), ("silence", "letter")]
 
 
+def test_a_failure_before_the_first_piece_does_not_end_the_next_utterance() -> None:
+    story = rs.Module("story", requires=[rawio])
+
+    @story.rule(when=rawio.input.changed, writes=rawio.speaking, emits=rawio.piece)
+    async def tell(ctx: rs.RuleContext) -> None:
+        if ctx.payload(rawio.input.changed) == "a secret":
+            raise ValueError("no")
+        ctx[rawio.speaking] = True
+        await ctx.sleep(2)
+        ctx.emit(rawio.piece, "Once")
+        ctx[rawio.speaking] = False
+
+    page = rs.Module("page", requires=[rawio])
+    rawio.carry(page, page.slot("listener", Shown()))
+
+    with simulate(story, page) as sim:
+        sim.say("a secret")
+        sim.advance(1)
+        sim.say("a story")
+        sim.advance(1)
+        assert sim.read(rawio.speaking)
+        sim.advance(1)
+        assert [words for words, _ in sim.read(page.slots[0]).log] == ["Once", "silence"]
+
+
 @pytest.mark.parametrize(
     ("text", "pieces", "rest"),
     [

@@ -71,13 +71,14 @@ def carry(module: rs.Module, slot: rs.Slot[Any]) -> None:
         if listener := ctx[slot]:
             listener.fall_silent(ctx.origin)
 
+    # The condition does not ask for `speaking`: the error would wait for the flag, and end a later utterance.
     @module.rule(
-        when=rs.error.max_age(None).detached() & speaking.holds(bool), writes=speaking, detached=True, background=True
+        when=rs.error.max_age(None).detached(), reads=speaking, writes=speaking, detached=True, background=True
     )
     async def end_failed(ctx: rs.RuleContext) -> rs.Resign | None:
         """End a growing utterance after the rule that produced it has failed."""
         failed = ctx.policy.rules.get(ctx.payload(rs.error).rule)
-        if failed is None or speaking not in failed.writes:
-            return rs.Resign("the rule that failed produced no utterance")
+        if failed is None or speaking not in failed.writes or not ctx[speaking]:
+            return rs.Resign("the rule that failed left no utterance unfinished")
         ctx[speaking] = False
         return None
