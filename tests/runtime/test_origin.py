@@ -93,6 +93,35 @@ def test_each_change_of_a_collection_has_the_origin_of_its_write() -> None:
     assert found == [("ann", "door"), ("ben", "door"), ("cem", None)]
 
 
+def test_an_error_has_the_origin_of_the_run_that_failed() -> None:
+    m = rs.Module("m")
+    asked, said = m.signal("asked", payload=str, input=True), m.slot("said", "", always=True)
+    found = shown(m, said)
+
+    @m.rule(when=asked)
+    async def fail(ctx: rs.RuleContext) -> None:
+        await ctx.sleep(5.0)
+        raise ValueError(ctx.payload(asked))
+
+    @m.rule(when=asked.detached(), timeout=2.0)
+    async def dawdle(ctx: rs.RuleContext) -> None:
+        await ctx.sleep(60.0)
+
+    @m.rule(when=rs.error.max_age(None).detached(), writes=said, detached=True)
+    async def excuse(ctx: rs.RuleContext) -> None:
+        ctx[said] = ctx.payload(rs.error).rule
+
+    with simulate(m) as sim:
+        sim.context.emit(asked, "one", origin=1)
+        sim.advance(1.0)
+        sim.context.emit(asked, "two")
+        sim.advance(20.0)
+        sim.context.emit(asked, "three", origin=3)
+        sim.advance(20.0)
+        origins = {rule: [origin for name, origin in found if name == rule] for rule in ("m:fail", "m:dawdle")}
+        assert origins == {"m:fail": [1, None, 3], "m:dawdle": [1, None, 3]}
+
+
 def test_a_journal_keeps_the_origins() -> None:
     m = rs.Module("m")
     heard, said = m.slot("heard", "", input=True), m.slot("said", "")

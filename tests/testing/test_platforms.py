@@ -7,7 +7,7 @@ from collections.abc import Awaitable, Callable
 import pytest
 
 from ravestate.testing import CHECKS, Driver, platforms
-from ravestate.testing.platforms import check_answer, check_order, check_restart, check_users
+from ravestate.testing.platforms import check_answer, check_failure, check_order, check_restart, check_users
 
 
 class InMemory:
@@ -25,7 +25,7 @@ class InMemory:
 
     async def say(self, user: str, text: str) -> None:
         answers = self._answers[user]
-        answer = str(len(answers) + 1) if text == "count" else text
+        answer = {"count": str(len(answers) + 1), "fail": platforms.PIECE}.get(text, text)
         answers += [answer] * (2 if text == self._doubled else 1)
 
     async def read(self, user: str, count: int) -> list[str]:
@@ -66,7 +66,13 @@ class Late(InMemory):
 @pytest.mark.parametrize("platform", [InMemory, Late])
 @pytest.mark.parametrize(
     ("check", "last"),
-    [(check_answer, "x" * 3000), (check_order, "message 11"), (check_users, "count"), (check_restart, "after of emil")],
+    [
+        (check_answer, "x" * 3000),
+        (check_order, "message 11"),
+        (check_users, "count"),
+        (check_failure, "fail"),
+        (check_restart, "after of emil"),
+    ],
 )
 def test_a_check_fails_if_the_last_message_is_answered_twice(
     check: Callable[[Driver], Awaitable[None]], last: str, platform: Callable[[str], InMemory]

@@ -83,10 +83,10 @@ class Parts:
             if state.deadlines.earliest <= state.now:
                 self.advance(state.now)
             elif state.errors:
-                failure, lineage = state.errors[0]
+                failure, lineage, origin = state.errors[0]
                 state.errors = state.errors[1:]
                 error = state.policy.signal_of["core:error"]
-                self.matching.birth(error, failure, (), self.matching.new_group(), None, lineage=lineage)
+                self.matching.birth(error, failure, (), self.matching.new_group(), None, origin, lineage)
             elif state.busy and not state.values.get(state.activity.index):
                 self.slots.set_flag(state.activity, True)
             elif free.new or free.batch or free.line:

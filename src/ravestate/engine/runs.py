@@ -57,8 +57,6 @@ class Runs:
         state.running[state.runs] = activation
         loops = state.loops
         loops.runs += 1
-        if loops.runs > MANY and (loop := loops.find(activation)):
-            state.fail(loop[0], RuleError(_endless(loop)), signal=True)
         if rule.timeout is not None:
             activation.deadline = state.now + rule.timeout
             state.deadlines.add(activation.deadline, TIMEOUT, activation)
@@ -72,6 +70,8 @@ class Runs:
                 payloads[spike.signal.name] = spike.payload
                 if spike.origin is not None:
                     activation.origin = _origin(activation)
+        if loops.runs > MANY and (loop := loops.find(activation)):
+            state.fail(loop[0], RuleError(_endless(loop)), signal=True, origin=activation.origin)
         values: dict[str, Any] = {}
         for view in rule.views:
             values[view.name] = state.read(view.index)
@@ -162,7 +162,7 @@ class Runs:
         self.holdings.end(run)
         if outcome == FAILED:
             failure = exception or RuleError(f"rule {rule.name} failed")
-            state.fail(rule, failure, signal=not on_error, lineage=state.loops.lineage(run))
+            state.fail(rule, failure, signal=not on_error, lineage=state.loops.lineage(run), origin=run.origin)
 
     def _begin_recovery(self, rule: RulePlan) -> None:
         """Record that a rule with a cooldown has run. The activations whose order this changes ask again (L9, L15)."""

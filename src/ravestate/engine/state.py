@@ -174,8 +174,9 @@ class State(Memory):
         """The effects that the runtime has not taken yet."""
         self.acts = False
         """Whether one of these effects starts or cancels a run."""
-        self.errors: tuple[tuple[RuleFailure, Lineage | None], ...] = ()
-        """The failures that ``core:error`` has not reported yet, each with its lineage: the rules that led to it."""
+        self.errors: tuple[tuple[RuleFailure, Lineage | None, Any], ...] = ()
+        """The failures that ``core:error`` has not reported yet, each with its lineage (the rules that led
+        to it), and the origin of the failed run."""
         self.faults: dict[int, tuple[Clause, Any, Exception]] = NOTHING
         """Key: the `id` of a predicate whose exception is not reported yet. Value: the first declared clause with the
         predicate, the predicate, and the exception."""
@@ -362,11 +363,19 @@ class State(Memory):
             self.blamed |= {id(predicate)}
             self.fail(clause.rule, exception, signal=True)
 
-    def fail(self, rule: RulePlan, exception: BaseException, *, signal: bool, lineage: Lineage | None = None) -> None:
+    def fail(
+        self,
+        rule: RulePlan,
+        exception: BaseException,
+        *,
+        signal: bool,
+        lineage: Lineage | None = None,
+        origin: Any = None,
+    ) -> None:
         """Report a failure of a rule to the runtime; with `signal`, ``core:error`` occurs next."""
         self.out.append(Failed(rule.name, exception))
         if signal:
-            self.errors = (*self.errors, (RuleFailure(rule.name, exception), lineage))
+            self.errors = (*self.errors, (RuleFailure(rule.name, exception), lineage, origin))
 
     # ------------------------------------------------------------------------------------ utility
 

@@ -63,7 +63,8 @@ class RuleContext:
 
         It is None if that code passed no object, or if no event from outside led to the run: then the agent acts on its
         own initiative. The object also passes through detached rules. If several events led to the run, the object of
-        the youngest spike counts; spikes of detached constraints count last.
+        the youngest spike counts; spikes of detached constraints count last. ``core:error`` has the object of the run
+        that failed. ``core:activity``, ``core:pressure`` and the failure of a predicate have none.
         """
         self._payloads = effect.payloads
         self._values: dict[str, Any] = effect.values  # type: ignore[assignment]  # made for this run alone

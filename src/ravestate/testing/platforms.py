@@ -1,4 +1,4 @@
-"""Checks that every platform for conversations passes: order, separate users, restarts.
+"""Checks that every platform for conversations passes: order, separate users, failures, restarts.
 
 A platform's test runs each check against the platform, with the agent `echo` and a `Driver`:
 
@@ -29,16 +29,24 @@ LAST = "the last message"
 answer to this message."""
 
 echo = rs.Module("echo", requires=(rawio,))
-"""The agent of the checks. It repeats each message, and answers ``count`` with the number of messages so far."""
+"""The agent of the checks. It repeats each message, and answers ``count`` with the number of messages so far. In the
+middle of its answer to ``fail``, its rule fails."""
+
+PIECE = "I was about to"
+"""The first and only piece of the answer to ``fail``."""
 
 _count = echo.slot("count", 0)
 
 
-@echo.rule(when=rawio.input.changed, writes=(rawio.output, _count))
+@echo.rule(when=rawio.input.changed, writes=(rawio.output, rawio.speaking, _count), emits=rawio.piece)
 async def repeat(ctx: rs.RuleContext) -> None:
-    """Repeat the user's words, or say the number of messages in this context."""
+    """Repeat the user's words, or say the number of messages in this context, or fail after a piece."""
     text = ctx.payload(rawio.input.changed)
     ctx[_count] = ctx[_count] + 1
+    if text == "fail":
+        ctx[rawio.speaking] = True
+        ctx.emit(rawio.piece, PIECE)
+        raise ValueError("the check has asked for a failure")
     ctx[rawio.output] = str(ctx[_count]) if text == "count" else text
 
 
@@ -104,6 +112,14 @@ async def check_users(driver: Driver) -> None:
             await _end(driver, user, [*texts, "4"])
 
 
+async def check_failure(driver: Driver) -> None:
+    """Check that a rule that fails in the middle of its utterance leaves its words so far, as a message."""
+    async with _limited(driver):
+        await driver.say("ada", "fail")
+        _agree(await _read(driver, "ada", 1), [PIECE])
+        await _end(driver, "ada", [PIECE])
+
+
 async def check_restart(driver: Driver) -> None:
     """Check that the agent answers messages from before, during and after a crash once, and in order."""
     texts: dict[str, list[str]] = {user: [] for user in USERS}
@@ -125,7 +141,13 @@ async def check_restart(driver: Driver) -> None:
             await _end(driver, user, texts[user])
 
 
-CHECKS: tuple[Callable[[Driver], Awaitable[None]], ...] = (check_answer, check_order, check_users, check_restart)
+CHECKS: tuple[Callable[[Driver], Awaitable[None]], ...] = (
+    check_answer,
+    check_order,
+    check_users,
+    check_failure,
+    check_restart,
+)
 """All checks of a platform, each an async function of a driver."""
 
 

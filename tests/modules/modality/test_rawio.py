@@ -20,16 +20,16 @@ class Shown:
     """A listener that keeps a log of what it is shown."""
 
     def __init__(self) -> None:
-        self.log: list[str] = []
+        self.log: list[tuple[str, object]] = []
 
-    def utter(self, text: str) -> None:
-        self.log.append(text)
+    def utter(self, text: str, origin: object = None) -> None:
+        self.log.append((text, origin))
 
-    def grow(self, piece: str) -> None:
-        self.log.append(piece)
+    def grow(self, piece: str, origin: object = None) -> None:
+        self.log.append((piece, origin))
 
-    def fall_silent(self) -> None:
-        self.log.append("silence")
+    def fall_silent(self, origin: object = None) -> None:
+        self.log.append(("silence", origin))
 
 
 def test_equal_inputs_raise_the_signal_each_time() -> None:
@@ -67,13 +67,38 @@ def test_a_rule_that_fails_in_the_middle_of_an_utterance_ends_the_utterance() ->
     rawio.carry(page, page.slot("listener", Shown()))
 
     with simulate(story, page) as sim:
-        sim.say("a story")
+        sim.context.put(rawio.input, "a story", origin="letter")
         sim.advance(1)
         assert sim.read(rawio.speaking)
         sim.advance(1)
         assert not sim.read(rawio.speaking)
         assert [rule for rule, _ in sim.failures] == ["story:listen", "story:tell"]
-        assert sim.read(page.slots[0]).log == ["Once ", "silence"]
+        assert sim.read(page.slots[0]).log == [("Once ", "letter"), ("silence", "letter")]
+
+
+def test_a_failure_before_the_first_piece_does_not_end_the_next_utterance() -> None:
+    story = rs.Module("story", requires=[rawio])
+
+    @story.rule(when=rawio.input.changed, writes=rawio.speaking, emits=rawio.piece)
+    async def tell(ctx: rs.RuleContext) -> None:
+        if ctx.payload(rawio.input.changed) == "a secret":
+            raise ValueError("no")
+        ctx[rawio.speaking] = True
+        await ctx.sleep(2)
+        ctx.emit(rawio.piece, "Once")
+        ctx[rawio.speaking] = False
+
+    page = rs.Module("page", requires=[rawio])
+    rawio.carry(page, page.slot("listener", Shown()))
+
+    with simulate(story, page) as sim:
+        sim.say("a secret")
+        sim.advance(1)
+        sim.say("a story")
+        sim.advance(1)
+        assert sim.read(rawio.speaking)
+        sim.advance(1)
+        assert [words for words, _ in sim.read(page.slots[0]).log] == ["Once", "silence"]
 
 
 @pytest.mark.parametrize(

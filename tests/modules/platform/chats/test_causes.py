@@ -175,6 +175,61 @@ async def test_two_answers_that_grow_at_once_do_not_mix(tmp_path: Path) -> None:
 
 
 @in_virtual_time
+async def test_the_words_of_a_rule_that_fails_become_an_answer_to_its_message(tmp_path: Path) -> None:
+    failing = rs.Module("failing", requires=(rawio,))
+
+    @failing.rule(when=rawio.input.changed, writes=(rawio.output, rawio.speaking), emits=rawio.piece)
+    async def tell(ctx: rs.RuleContext) -> None:
+        text = ctx.payload(rawio.input.changed)
+        ctx[rawio.speaking] = True
+        ctx.emit(rawio.piece, f"{text}, and ")
+        await ctx.sleep(5.0)
+        if text == "a":
+            raise ValueError("the rest is lost")
+        ctx[rawio.output] = f"{text}, and so on"
+        ctx[rawio.speaking] = False
+
+    post = Post()
+    async with room(tmp_path, post, failing) as opened:
+        opened.receive([a := in_group("a", ANN)])
+        await past(2.0)
+        opened.receive([b := in_group("b", BEN)])
+        await past(10.0)
+        assert texts(post) == [("a, and", a.id), ("b, and so on", b.id)]
+
+
+@in_virtual_time
+async def test_the_words_of_a_rule_that_failed_do_not_come_before_the_next_growing_words(tmp_path: Path) -> None:
+    herald = answering()
+    news = herald.signal("news", payload=str, input=True)
+
+    @herald.rule(when=news, writes=(rawio.output, rawio.speaking), emits=rawio.piece)
+    async def tell(ctx: rs.RuleContext) -> None:
+        if ctx.payload(news) == "lost":
+            ctx.emit(rawio.piece, "Lost ")
+            raise ValueError("the rest is lost")
+        ctx[rawio.speaking] = True
+        for piece in ("Good ", "news"):
+            await ctx.sleep(3.0)
+            ctx.emit(rawio.piece, piece)
+        ctx[rawio.speaking] = False
+
+    post = Post()
+    async with room(tmp_path, post, herald) as opened:
+        opened.receive([letter("one")])
+        await post.said(1)
+        opened.agent.contexts[0].emit(news, "lost")
+        await past(1.0)
+        opened.receive([letter("two")])
+        await past(5.0)
+        opened.agent.contexts[0].emit(news, "good")
+        await past(4.0)
+        opened.receive([letter("three")])  # its answer ends while the news are growing
+        await past(10.0)
+        assert [text for text, _ in texts(post)] == ["re one", "re two", "re three", "Good news"]
+
+
+@in_virtual_time
 async def test_a_picture_replies_to_its_message_and_is_not_sent_again_after_a_crash(folder: Path) -> None:
     painter = rs.Module("painter", requires=(rawio,))
 

@@ -10,17 +10,21 @@ from .names import output, piece, speaking
 
 
 class Listener(Protocol):
-    """The user's side of a conversation: it gets the agent's words."""
+    """The user's side of a conversation: it gets the agent's words.
 
-    def utter(self, text: str) -> None:
+    `origin` is the ``ctx.origin`` of the words: the input that they answer, or None. If utterances grow at the same
+    time, it tells their pieces apart.
+    """
+
+    def utter(self, text: str, origin: object = None) -> None:
         """Show the user a whole utterance of the agent."""
         ...
 
-    def grow(self, piece: str) -> None:
+    def grow(self, piece: str, origin: object = None) -> None:
         """Show the user a piece of an utterance that is still growing."""
         ...
 
-    def fall_silent(self) -> None:
+    def fall_silent(self, origin: object = None) -> None:
         """End the utterance that is still growing, if there is one: no rule continues it."""
         ...
 
@@ -54,27 +58,28 @@ def carry(module: rs.Module, slot: rs.Slot[Any]) -> None:
     async def show(ctx: rs.RuleContext) -> None:
         """Show each utterance of the agent to the user."""
         if listener := ctx[slot]:
-            listener.utter(ctx.payload(output.changed))
+            listener.utter(ctx.payload(output.changed), ctx.origin)
 
     @module.rule(when=piece.max_age(None).detached(), reads=slot, background=True)
     async def show_piece(ctx: rs.RuleContext) -> None:
         """Show each piece of a growing utterance to the user."""
         if listener := ctx[slot]:
-            listener.grow(ctx.payload(piece))
+            listener.grow(ctx.payload(piece), ctx.origin)
 
     @module.rule(when=speaking.false.max_age(None).detached(), reads=slot, background=True)
     async def end_piece(ctx: rs.RuleContext) -> None:
         """End the utterance that is still growing, if there is one, when ``speaking`` becomes false."""
         if listener := ctx[slot]:
-            listener.fall_silent()
+            listener.fall_silent(ctx.origin)
 
+    # The condition does not ask for `speaking`: the error would wait for the flag, and end a later utterance.
     @module.rule(
-        when=rs.error.max_age(None).detached() & speaking.holds(bool), writes=speaking, detached=True, background=True
+        when=rs.error.max_age(None).detached(), reads=speaking, writes=speaking, detached=True, background=True
     )
     async def end_failed(ctx: rs.RuleContext) -> rs.Resign | None:
         """End a growing utterance after the rule that produced it has failed."""
         failed = ctx.policy.rules.get(ctx.payload(rs.error).rule)
-        if failed is None or speaking not in failed.writes:
-            return rs.Resign("the rule that failed produced no utterance")
+        if failed is None or speaking not in failed.writes or not ctx[speaking]:
+            return rs.Resign("the rule that failed left no utterance unfinished")
         ctx[speaking] = False
         return None

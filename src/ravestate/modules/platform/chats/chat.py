@@ -390,6 +390,8 @@ class Chat:
             return  # the conversation has failed
         finally:
             work.cancel()
+            if not self.context.read(rawio.speaking):  # else an utterance is still growing
+                self._draft.cut_off()
             if self._following is asyncio.current_task():
                 self._following = None
         self._room.make_room()

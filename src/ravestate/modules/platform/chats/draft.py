@@ -30,19 +30,32 @@ class Draft:
 
     def __init__(self, chat: str) -> None:
         self._texts: dict[Entry | None, str] = {}  # for each message: the words so far of its growing answer
+        self._cut: set[Entry | None] = set()  # the messages whose growing answers have been cut off
         self._last: Entry | None = None  # the message whose answer grew last
         self._chat = chat
         self._grown = asyncio.Event()
 
     def grow(self, piece: str, cause: Entry | None) -> None:
         """Add a piece to the growing answer to a message (None: to no message)."""
+        if cause in self._cut:
+            self.take(cause)  # the words before the cut belong to another answer
         self._texts[cause] = self._texts.get(cause, "") + without_controls(piece)
         self._last = cause
         self._grown.set()
 
     def take(self, cause: Entry | None) -> str:
         """Remove the growing answer to a message, and return its words."""
+        self._cut.discard(cause)
         return self._texts.pop(cause, "")
+
+    def cut_off(self) -> None:
+        """Note that the answers so far grow no more: the next piece begins a new answer.
+
+        The rule that ends a failed answer may run a moment later. So `take` returns the words until the next cut.
+        """
+        for cause in self._cut:
+            self._texts.pop(cause, None)
+        self._cut = set(self._texts)
 
     async def show(self, room: Room, silent: Callable[[], bool]) -> None:
         """Show that the agent is writing, with the words so far, until cancelled. Pause while `silent` returns True."""

@@ -124,7 +124,7 @@ class Console:
                 self.ending = "closed"
         raise StopAsyncIteration
 
-    def utter(self, text: str) -> None:
+    def utter(self, text: str, origin: object = None) -> None:
         """Print `text` and a line end.
 
         If `text` begins with the streamed pieces, only the rest is printed, after the pieces. If `text` begins in
@@ -138,7 +138,7 @@ class Console:
             self._end_line()
             self._safely(lambda: self._screen.show(text))
 
-    def grow(self, piece: str) -> None:
+    def grow(self, piece: str, origin: object = None) -> None:
         """Print `piece` after the earlier pieces of its text. Without a terminal, print only whole lines."""
         piece = without_controls(piece)
         if piece:
@@ -146,7 +146,7 @@ class Console:
             self._line_is_open = True
             self._safely(lambda: self._screen.stream(piece))
 
-    def fall_silent(self) -> None:
+    def fall_silent(self, origin: object = None) -> None:
         """End the line of the pieces printed so far; if there are none, do nothing."""
         self._streamed = ""
         self._end_line()

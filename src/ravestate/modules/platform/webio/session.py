@@ -279,7 +279,7 @@ class Session:
         name = self.context.read(interloc.agent) if self._begun else ""
         return name_of(name[:LONGEST_NAME]) or interloc.agent.default
 
-    def utter(self, text: str) -> None:
+    def utter(self, text: str, origin: object = None) -> None:
         """Add a whole utterance of the agent to the history."""
         text = printable(text)
         self.partial = ""
@@ -290,12 +290,12 @@ class Session:
                 self.mark_heard(part)
         self.notify()
 
-    def grow(self, piece: str) -> None:
+    def grow(self, piece: str, origin: object = None) -> None:
         """Add a piece to the agent's growing utterance."""
         self.partial += without_controls(piece)
         self.notify()
 
-    def fall_silent(self) -> None:
+    def fall_silent(self, origin: object = None) -> None:
         """End the agent's growing utterance; its text so far becomes a message."""
         if self.partial:
             self.utter(self.partial)
