@@ -22,6 +22,8 @@ from ravestate.language.slips import slips
         ("from 9:30, no 10", "From 10."),
         ("I get up at 5:30, no 6:30", "I get up at 6:30."),
         ("I have 2 children, no 3 children", "I have 3 children."),
+        ("I visited Rome, no, Bern, no, Bonn.", "I visited Bonn."),
+        ("I'm 34, no 35, no 36", "I'm 36."),
     ],
 )
 def test_words_that_the_user_takes_back_are_left_out(text: str, meant: str) -> None:
