@@ -33,6 +33,7 @@ from ravestate.modules.meta.nlp.questions import MOST
         ("When you lie, I know. I like what you say.", []),
         ("I met Tom, who is nice, and who likes jazz.", []),
         ("I like tea and when it rains I read. Who are you?", []),
+        ("Tell my mum I love her. Who are you?", []),
         ("Where do Tom and Ann live?", []),
         ("I live here. Where do you live?", []),
         ("hello", []),

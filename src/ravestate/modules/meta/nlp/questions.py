@@ -60,8 +60,10 @@ def _is_direct(tree: Tree, clause: Sequence[Word]) -> bool:
 
 def _requests(clause: Sequence[Word]) -> bool:
     """Return whether a clause is a request for a fact."""
-    first = next((word for word in clause if word.pos not in ("PUNCT", "INTJ", "CCONJ") and word.low != "please"), None)
-    return first is not None and first.low in _REQUESTING and first.pos == "VERB"
+    said = [word for word in clause if word.pos not in ("PUNCT", "INTJ", "CCONJ") and word.low != "please"]
+    if not said or said[0].low not in _REQUESTING or said[0].pos != "VERB":
+        return False
+    return said[0].low not in ("tell", "remind") or any(word.low in ("me", "us") for word in said[1:2])
 
 
 def _asks(word: Word) -> bool:
