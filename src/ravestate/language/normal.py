@@ -6,7 +6,7 @@ A well-written sentence stays as it is. Other sentences are mended in four steps
    capitals of names with the `Lexicon`;
 2. punctuation: add a space after a comma, a comma after an interjection, a full stop before a question;
 3. the start and end of each sentence: add a capital, and a full stop or question mark;
-4. a slip of the tongue: leave out the words that the user takes back, as in *I live in Bern, I mean Bonn*.
+4. slips of the tongue: leave out the words that the user takes back, as in *I live in Bern, I mean Bonn*.
 """
 
 from __future__ import annotations
@@ -210,8 +210,9 @@ def _normalised(text: str, names: tuple[tuple[str, str], ...], lexicon: Lexicon 
             if again.text == normal.text:
                 break
             normal = Normal(again.text, text, tuple(normal.origin[place] for place in again.origin))
-    for start, end in slips(normal.text):
-        return Normal(normal.text[:start] + normal.text[end:], text, normal.origin[:start] + normal.origin[end:])
+    while slip := next(slips(normal.text), None):  # "in Rome, no, Bern, no, Bonn" has two
+        start, end = slip
+        normal = Normal(normal.text[:start] + normal.text[end:], text, normal.origin[:start] + normal.origin[end:])
     return normal
 
 

@@ -6,17 +6,28 @@ import re
 from collections.abc import Iterator
 
 _NAME = r"[A-Z][\w'’-]+(?: [A-Z][\w'’-]+)*"
-_SORRY = r"(?:,? (?:no,? )?i mean(?:t)?,?|, (?:or rather|(?:no, )?(?:sorry|wait),?|no,))"
+_NUMBER = r"\d+(?:[.,:]\d+)*(?![.,:]?\d)"
+"""A whole number, price or time: *3.50*, *1,000*, *9:30*."""
+_NO = r"(?:, no, (?:i mean(?:t)?|sorry|wait),?|, no,)"
+_SORRY = rf"(?:, (?:no )?i mean(?:t)?,?|, (?:or rather|(?:sorry|wait),?)|{_NO})"
 _END = r"(?=\s*(?:[.,!?;]|$))"
+_CLOSED = r"(?=\s*(?:[.,!?;]|$)|,? I (?:think|guess|believe)\b)"
+_NOBODY = r"(?!(?:Mum|Mom|Mummy|Mommy|Dad|Daddy|Gran|Grandma|Grandpa|Granny|Sir|Madam|Doctor|Professor)\b)"
+"""Excludes the words for a listener: *I came from Bern, sorry, Mum* corrects nothing."""
 _SLIPS = tuple(
-    re.compile(rf"(?<![\w'’-])(?P<wrong>{wrong}(?i:{mark}) ){right}")
+    re.compile(rf"(?<![\w'’-])(?<!\d[.,:])(?P<wrong>{wrong}(?i:{mark}) ){right}")
     for wrong, mark, right in (
-        (_NAME, _SORRY, rf"{_NAME}{_END}"),
-        (r"\d+", rf"(?:{_SORRY}|, no)", r"\d+(?![\w:]|\.\d)"),
+        (_NAME, _SORRY, rf"{_NOBODY}{_NAME}{_END}"),
+        (_NUMBER, rf"(?:{_SORRY}|, no)", rf"{_NUMBER}{_CLOSED}"),
+        (_NUMBER, _NO, rf"{_NUMBER}(?!\w)"),
+        (rf"{_NUMBER} (?P<unit>[a-z]+)", rf"(?:{_SORRY}|, no)", rf"{_NUMBER} (?P=unit){_CLOSED}"),
         (r"an? [a-z]+", _SORRY, rf"an? [a-z]+{_END}"),
     )
 )
-"""Two names, two numbers, or two nouns with articles, and between them the words with which the user corrects the first."""
+"""Two names, two numbers, or two nouns with articles, and between them the words with which the user corrects the first.
+
+Other words may follow the second number only after *no,*. *There were 10, no 2 alike* corrects nothing.
+"""
 _DENIAL = re.compile(r"\b(?:not|never|no)\b|n['’]t\b", re.IGNORECASE)
 _STOP = re.compile(r"[.!?]\s")
 

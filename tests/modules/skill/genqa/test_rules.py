@@ -71,6 +71,12 @@ def test_a_fragment_asks_for_the_kind_of_the_question_that_it_completes(settings
         ("Who are you? What is the capital of Chad?", ("N'Djamena",)),
         ("Who was Napoleon and when did he die?", ("general", "1821")),
         ("When and where was Goethe born?", ("1749 in Frankfurt",)),
+        ("Tell me the capital of France. Who wrote Hamlet?", ("Paris", "Shakespeare")),
+        (
+            "Who wrote Hamlet? Tell me the capital of France. What is the capital of Peru?",
+            ("Shakespeare", "Paris", "Lima"),
+        ),
+        ("Tell me a joke. What is the capital of Peru?", ("Lima",)),
     ],
 )
 def test_each_question_of_an_utterance_is_answered(

@@ -97,7 +97,7 @@ class Analysis:
     """The move that a good listener makes next, such as to rejoice, console or advise."""
 
     questions: tuple[Analysis, ...] = ()
-    """The analyses of the single questions, if the utterance asks several; otherwise empty."""
+    """The analyses of the single questions, if the utterance asks several; otherwise empty. Requests for facts count."""
 
     intents: Mapping[str, Match] = field(default_factory=dict[str, Match])
     """Name of the signal of a designer's intent (`nlp.intent`) → the best match of a sentence for this intent."""
