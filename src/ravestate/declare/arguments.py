@@ -82,7 +82,9 @@ def check_function(function: object, title: str, *, named: bool, where: str, dec
         raise DeclarationError(
             f"{where} is a generator, but a rule returns only once: use ctx[slot] = value instead of yield"
         )
-    try:  # the engine calls the decorated function, so the signature of the function inside does not count
+    # If another decorator wraps the function, the engine calls the wrapper. So the wrapper's signature counts, not the
+    # wrapped function's.
+    try:
         signature = inspect.signature(function, follow_wrapped=False)
     except Exception:  # a function of C has no signature; Python 3.14 may fail to evaluate an annotation
         return
@@ -95,8 +97,8 @@ def check_function(function: object, title: str, *, named: bool, where: str, dec
 def condition(value: object, what: str, where: str, home: str) -> Condition:
     """Return `value` if it is a condition; refuse any other value.
 
-    The message uses `what`, the argument's name, and `where`, the place of the declaration. It shows names of the
-    module `home` without the module's name.
+    The message uses `what`, the argument's name, and `where`, the place of the declaration. In the code that it
+    suggests, a slot of the module `home` appears without that module's prefix.
     """
     if isinstance(value, Slot):
         slot = cast("Slot[Any]", value)
@@ -114,7 +116,10 @@ def number(value: object, what: str, where: str) -> Number:
 
 
 def several(values: Any, kind: type[T], what: str, where: str, home: str) -> tuple[T, ...]:
-    """Return one or more slots or signals as a tuple without duplicates. For the other arguments, see `condition`."""
+    """Return one or more slots or signals as a tuple without duplicates.
+
+    `what`, `where` and `home` are as for `condition`.
+    """
     if isinstance(values, kind):
         return (values,)
     found: tuple[Any, ...] = (values,)

@@ -1,18 +1,28 @@
-"""The horizon (law L16): whether the missing constraints (*needs*) of a rival may yet be met.
+"""Decide whether a rival may still become ready (law L16).
+
+Read first: docs/explanation/processing-model.md, which explains rivals, causal groups, patience and laws such as L16.
+
+A rival may still become ready if each of its constraints without a spike (its missing *needs*) may yet get one.
 
 The horizon of a group is the set of signals that rules of the group may yet cause. A rule may cause a signal if the rule
-runs, or if its constraints are met or may yet be met. So a signal depends on other signals: the horizon is a least fixed
-point over an and-or graph. The engine derives single signals, backwards from a signal to live activations, because few
-signals matter at a time. It skips the causes that no live rule of the group can reach (`Causes.ancestors`).
+runs, or if its constraints are met or may yet be met. So whether a signal may come depends on whether other signals may
+come. The horizon is the smallest set that satisfies this definition (a least fixed point over an and-or graph).
 
-The result of a derivation is a *strength*:
+The engine does not compute the whole set, because few signals matter at a time. It asks about one signal, and works
+backwards from it to live activations. A signal to which no live rule of the group leads (`Causes.ancestors`) needs no
+such search.
 
-``SURE``         work in progress may raise the signal: runs, ripening spikes, ready activations
-``SPECULATIVE``  a step needs an input, or a live rule of another group: only patience ends the wait
+Each such search is a *derivation*. Its result is a *strength*:
+
+``SURE``         work that will end by itself may lead to the signal: a run, a ready activation, or an activation whose
+                 spikes are still too young
+``SPECULATIVE``  an input, or a live rule of another group, must help; this help may never come, so the wait needs a
+                 limit (the rival's `patience`)
 ``NO``           nothing leads to the signal
 
 A rule that would take one of the rival's own slots cannot help the rival: in one group a slot is written once (L19).
-The asking activation cannot help either, nor can an activation that waits for it. These count as *inert*: doing nothing.
+The *asking activation* (the one that wants to run, and for which the engine judges the rival) cannot help either; nor
+can an activation that waits for it. These activations count as *inert*: doing nothing.
 
 A chain of causes may be too long for recursion. So each step of a derivation is a generator, a `Step`, which yields the
 steps whose strengths it needs. `_solve` runs the steps, and keeps the waiting steps on a stack.
@@ -44,7 +54,8 @@ Place = tuple[int, Group, SlotNumbers]
 
 FINAL: Final = 1 << 60
 STALE: Final = -1
-"""Special depths. `FINAL` marks a final strength. `STALE` marks a strength that the engine must derive again."""
+"""Special values in place of the depth in `Horizon._known`. `FINAL` marks a final strength. `STALE` marks a
+strength that the engine must derive again."""
 
 Step = Generator[Any, int, int]
 """A step of a derivation: it yields further steps, receives the strength of each, and returns its own strength."""
@@ -63,10 +74,11 @@ class Horizon:
     Attributes:
         roots: The live activations on which the latest derivation with the result `SURE` rests.
         visited: The groups on whose state the results depend.
-        hopes: Key: a kind (``activation.py``), and the number of a rule or signal whose change may change the results;
-            value: a count. For `OUTSIDE`, the count is a limit: the change of an activation matters only if its rule
-            has at most that many other activations. For other kinds, the count is 0.
-        recheck: The earliest time (seconds) at which a spike that the results need reaches its maximum age.
+        hopes: The changes after which the results may differ. A key is a kind of change (`RULE`, `OUTSIDE` or `SEEN`,
+            see ``activation.py``) and the number of a rule or signal. The value is a count. For `OUTSIDE`, the count is
+            a limit: if a rule has more than this many other activations, a change of one activation does not change the
+            results. For other kinds, the count is 0.
+        recheck: The time (seconds) at which the first of the spikes on which the results rest becomes too old.
     """
 
     __slots__ = (
@@ -92,7 +104,8 @@ class Horizon:
         self.inert = inert
         self.stuck = stuck
         self._inert: dict[int, int] | None = None  # rule → how many of its activations are in `inert`
-        # Place → its strength, its roots if the strength is SURE, and the depth of the oldest open derivation under it.
+        # Place → (its strength; its roots, if the strength is SURE; the depth of the oldest derivation on whose bound
+        # the strength rests).
         self._known: dict[Place, tuple[int, tuple[Activation, ...], int]] = {}
         self._depth = 0  # how many derivations are in progress
         self._since = FINAL  # the depth of the oldest derivation whose bound the present derivation has read
@@ -115,8 +128,9 @@ class Horizon:
     def judge(self, clause: Clause, activation: Activation | None, group: Group) -> tuple[int, tuple[Activation, ...]]:
         """Return the strength with which a clause may become ready in a group, and the `roots` of the result `SURE`.
 
-        `activation` is None for the clause's stand-by. An activation without a spike of the group is a rival there only
-        if it lacks a signal of the group's horizon.
+        `activation` is None for the clause's activation on stand-by, which holds no spike yet (see ``activation.py``).
+        An activation may hold no spike of the group. It is then a rival in this group only if the group may yet raise a
+        signal that the activation lacks.
         """
         self.roots.clear()
         strength = _solve(self._viable(clause, activation, group, clause.rule.slotset))
@@ -185,7 +199,8 @@ class Horizon:
                     self.visited[home] = None
             if not missing:
                 self.roots.append(activation)  # the activation is ready, or will be when its spikes are old enough
-        # For each missing need, or set of kin needs: `here` has its strength in this group, `best` in any group.
+        # One entry for each missing need. Needs that must hold spikes of the same group (kin) share an entry.
+        # `here`: the strength in this group; `best`: the strength in any group.
         here: list[int] = []
         best: list[int] = []
         answered = 0
@@ -364,7 +379,10 @@ class Horizon:
         return False
 
     def _helpless(self, rule: int, group: Group, *, near: bool) -> int:
-        """Count a rule's activations that cannot help from another group: inert ones and, with `near`, members of `group`."""
+        """Count the activations of a rule that cannot help `group` from outside.
+
+        These are inert ones, and members of `group` itself (counted only if `near`).
+        """
         if self._inert is None:
             self._inert = {}
             for activation in self.inert:

@@ -28,7 +28,8 @@ LOADING = 120.0
 """A model may take this many seconds to load."""
 
 LINGER = 60.0
-"""After its last release, a process stays loaded for this many seconds, if that call of `drop` had ``linger=True``."""
+"""If the last user of a process releases it with ``drop(..., linger=True)``, the process stays loaded for this many
+seconds."""
 
 SERVER = Path(__file__).with_name("serve.py")
 

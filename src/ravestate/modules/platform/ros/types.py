@@ -107,11 +107,12 @@ class Types:
         """Return a message in its wire format.
 
         Args:
-            value: A message, a mapping of fields (missing fields are zero), or the value of the only field.
+            value: A message; a mapping of fields (missing fields are zero); or, if the type has a single field, the
+                value of that field.
             name: The type's full name.
 
         Raises:
-            PlatformError: The value does not fit the type; the message names the field.
+            PlatformError: The value does not fit the type; the error's text names the field.
         """
         message = self.message(value, name)
         try:
@@ -133,7 +134,7 @@ class Types:
             raise PlatformError(f"a message is not of the type {name}: {error}") from error
 
     def message(self, value: Any, name: str) -> Any:
-        """Return a message of a type, from a message, a mapping of fields, or the value of the only field."""
+        """Make a message of a type. `value` is as for `encode`; a message of this type is returned unchanged."""
         return self._build(value, name, name)
 
     def _build(self, value: Any, name: str, path: str) -> Any:
@@ -210,7 +211,10 @@ class Types:
         return "", hashlib.md5(text.encode(), usedforsecurity=False).hexdigest()
 
     def _hashed(self, name: str) -> str:
-        """Return the text for the MD5 sum of a type: constants, then fields, with the sums of nested messages."""
+        """Return the text whose MD5 sum identifies a type: its constants, then its fields.
+
+        For a field that holds a message, the MD5 sum of the field's type replaces the name of this type.
+        """
         subdefs: dict[str, tuple[str, str]] = {}
         lines = [f"{type_} {field}={value}" for field, type_, value in self.store.fielddefs[name][0]]
         for field, (kind, of) in self.store.fielddefs[name][1]:
@@ -242,7 +246,10 @@ def plain(message: Any) -> Any:
 
 
 def _array(items: Any, base: str, count: int, path: str) -> Any:
-    """Return numbers as a flat array, in the order of an array with several dimensions, such as a picture."""
+    """Return numbers as a flat array.
+
+    An array with several dimensions, such as a picture, is flattened row by row.
+    """
     import numpy
 
     try:

@@ -34,9 +34,11 @@ CLIPPED = 0.02
 """A second of speech counts as clipped if more than this share of its samples is at the limit."""
 
 COMPARED = round(2.0 * IN_RATE / CHUNK)
-"""At a pause, the ear compares the voices in this many chunks (2 s) on each side."""
+"""When a pause begins, the ear compares the voices before and after the previous pause: at most this many chunks (2 s)
+on each side."""
 SEARCHED = round(8.0 * IN_RATE / CHUNK)
-"""The ear looks for a change of voice in this many chunks (8 s) at the end of a turn."""
+"""If that comparison finds no other person, the ear looks for a change of voice in the last chunks of the turn so far:
+at most this many (8 s)."""
 
 Event = Literal["onset", "articulate", "another", "pause"]
 
@@ -78,7 +80,9 @@ class Turn:
 
 
 class Ear:
-    """The ear of one line. It gets blocks of sound and yields events, for example onsets and pauses.
+    """The ear of one `Line` (a user's microphone and loudspeaker).
+
+    The ear gets blocks of sound and yields events, for example onsets and pauses.
 
     Args:
         speech: The minimum probability of speech for a chunk to count as speech.
@@ -105,7 +109,7 @@ class Ear:
         self._clean = bytearray()  # the sound without echo that does not fill a chunk yet
         self._before: deque[bytes] = deque(maxlen=BEFORE)  # the last chunks before a turn
         self._lately: deque[bool] = deque(maxlen=ONSET)  # whether the last chunks are articulate
-        self._in_a_row = self._silent = 0  # how many chunks of speech, or of silence, came last
+        self._in_a_row = self._silent = 0  # how many of the newest chunks in a row are speech; how many are silence
         self._spoken = self._articulate = 0  # how many chunks, and how many articulate ones, came since the onset
         self._at_limit = 0  # how many samples in this second of speech are clipped
         self._sure = False  # whether the ear has yielded ``articulate`` since the onset
@@ -116,7 +120,7 @@ class Ear:
         Args:
             block: The sound (PCM at `IN_RATE`), of any length.
             now: The time at the end of the block (seconds).
-            far: The loudspeaker's sound at the same time, as long as `block`; empty for silence.
+            far: The loudspeaker's sound at the same time, of the same length as `block`; empty for silence.
             agent_speaks: Whether the agent is speaking.
         """
         self._clean += self._without_echo(block, far)

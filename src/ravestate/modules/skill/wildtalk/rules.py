@@ -110,7 +110,8 @@ async def note(ctx: rs.RuleContext) -> None:
     """Add the agent's words to the history. Any rule may have said them."""
     said = ctx.payload(rawio.output.changed)
     lately = list(ctx[history].values())[-2:]
-    if not (said.endswith(INTERRUPTED) and Message("assistant", said) in lately):  # `chat` has already added it
+    # Skip an interrupted utterance, because `chat` has already added it.
+    if not (said.endswith(INTERRUPTED) and Message("assistant", said) in lately):
         remember(ctx, "assistant", said)
 
 
@@ -133,7 +134,10 @@ async def keep_heard(ctx: rs.RuleContext) -> rs.Resign | None:
 
 @module.rule(when=nlp.analysis.changed.max_age(None).detached(), reads=listening, writes=overheard, background=True)
 def overhear(ctx: rs.RuleContext) -> rs.Resign | None:
-    """Note the tone and the persons of every utterance, including those that other modules answer."""
+    """Note the tone of every utterance, and the person or animal that it mentions.
+
+    The rule also notes utterances that other modules answer.
+    """
     seen = ctx.payload(nlp.analysis.changed)
     if seen is None:
         return rs.Resign("nothing was analysed")
@@ -260,10 +264,14 @@ async def go_on(ctx: rs.RuleContext) -> rs.Resign | None:
     when=nlp.analysis.changed.where(may_suit),
     reads=(model, interloc.users, overheard, history),
     writes=(rawio.output, listening),
-    weight=4.0,  # this rule outranks modules that only note a fact in the same words: "I am Ann, my dog has died"
+    # This rule outranks modules that would only note a fact: in "I am Ann, my dog has died", only the name.
+    weight=4.0,
 )
 async def comfort(ctx: rs.RuleContext) -> rs.Resign | None:
-    """Answer sorrow, requests for a performance, corrections and known words. Outrank rules that only note a fact."""
+    """Answer sorrow, news, corrections and requests for a performance.
+
+    The rule also answers statements to which the listening skill has a reply.
+    """
     seen = ctx.payload(nlp.analysis.changed)
     if seen is None:
         return rs.Resign("nothing was analysed")

@@ -14,7 +14,7 @@ EACH = 1.0
 """Each picture of a folder is shown for this many seconds."""
 SUFFIXES = {".jpg", ".jpeg", ".png", ".webp", ".bmp", ".tif", ".tiff"}
 BEHIND = 1.0
-"""One look may spend this many seconds on skipping pictures of a video."""
+"""One call of `Video.picture` may spend at most this many seconds on skipping pictures."""
 WHOLE = 0.9
 """A video counts as damaged if less than this share of its pictures is readable."""
 SILENT = 5.0
@@ -125,7 +125,9 @@ class Video:
         newest, begun = None, time.monotonic()
         while self._waiting is not None and self._waiting[0] <= at:
             if newest is not None and time.monotonic() - begun > BEHIND:
-                break  # show a large video late rather than never
+                # A video that decodes too slowly is shown late. Without this limit, it would skip pictures for ever
+                # longer.
+                break
             self.skipped += newest is not None
             newest = self._waiting
             self._forward()
