@@ -1,8 +1,10 @@
 """The deadlines, in one heap. An entry becomes stale when its owner gets another deadline, or no longer needs one.
 
-`Deadlines` knows which entries still count. ``parts.py`` has a table, `DUE`, of handlers for entries that are due.
+`Deadlines` knows which entries are stale. ``parts.py`` has a table, `DUE`, of handlers for entries that are due.
 
-A *need* is one constraint of a clause. A detached need looks at a spike without consuming it.
+A *clause* is one alternative of a rule's condition. A *need* is one constraint of a clause: it asks for one spike. A
+*half* keeps a first spike, without an activation, until a second spike comes (``halves.py``). A detached need looks at a
+spike without consuming it.
 """
 
 from __future__ import annotations
@@ -27,8 +29,8 @@ class Kind(enum.IntEnum):
     RIPEN = 0  # all spikes of an activation are old enough
     LOOK = 1  # a spike is old enough for a detached need
     RECHECK = 2  # a reason to wait may end at this time (`Refusal.recheck`)
-    PATIENCE = 3  # the patience of a pressured activation ends
-    EXPIRE = 4  # a spike is too old for an incomplete activation, or for a half (``halves.py``)
+    PATIENCE = 3  # an activation's patience ends: others wait for it, as it lacks an input or another group's spike
+    EXPIRE = 4  # a spike is too old for an incomplete activation, or for a half
     FORGET = 5  # a spike is too old for every detached need
     TIMEOUT = 6  # a run times out
     WATCH = 7  # the spikes of an `until` condition are old enough
@@ -66,7 +68,7 @@ class Deadlines:
             self._limit = max(256, 2 * len(self._heap))
 
     def next(self) -> float | None:
-        """Return the time of the first entry that counts (seconds); None if there is none."""
+        """Return the time, in seconds, of the first entry that is not stale; None if there is none."""
         heap = self._heap
         while heap:
             time, kind, _, owner = heap[0]
@@ -78,12 +80,12 @@ class Deadlines:
         return None
 
     def pop(self, now: float) -> Entry | None:
-        """Remove the first entry that counts, and return it, if it is due at `now` (seconds); else return None."""
+        """If the first entry that is not stale is due at `now` (seconds), remove and return it; else return None."""
         due = self.next()
         return heapq.heappop(self._heap) if due is not None and due <= now else None
 
     def _counts(self, time: float, kind: Kind, owner: Any) -> bool:
-        """Return whether an entry still counts."""
+        """Return whether an entry is not stale."""
         if kind == RIPEN:
             return owner.ripens == time
         if kind == LOOK:

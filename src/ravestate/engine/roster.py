@@ -1,8 +1,9 @@
-"""A roster: the members of a large causal group by slot and by rule.
+"""A roster: an index that finds the members of a large causal group by slot or by rule.
 
-A thousand rules may hear one input. A question about one slot then concerns only the few members that write the slot,
-and a roster finds these without a search. A group of few members needs no roster. The engine makes the roster of a
-larger group at the first such question. From then on, `Group.join` and `Group.part` keep it up to date.
+A causal group is a set of spikes with one cause. Its members are the activations that hold these spikes. A thousand
+rules may hear one input. When the engine looks for the members that write one slot, there are only a few of them. A
+roster finds these without a search. A group of few members needs no roster. The engine makes the roster of a larger
+group at the first such lookup. From then on, `Group.join` and `Group.part` keep it up to date.
 """
 
 from __future__ import annotations
@@ -20,7 +21,7 @@ FEW: Final = 8
 
 
 class Roster(Generic[Member]):
-    """The members of a causal group: activations. This class uses only their rules.
+    """The members of a causal group. The class keeps the activations themselves, but looks only at the rule of each.
 
     Attributes:
         rules: Number of a rule → its activations in the group, in the order in which they joined.

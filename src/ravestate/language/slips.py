@@ -13,7 +13,7 @@ _SORRY = rf"(?:, (?:no )?i mean(?:t)?,?|, (?:or rather|(?:sorry|wait),?)|{_NO})"
 _END = r"(?=\s*(?:[.,!?;]|$))"
 _CLOSED = r"(?=\s*(?:[.,!?;]|$)|,? I (?:think|guess|believe)\b)"
 _NOBODY = r"(?!(?:Mum|Mom|Mummy|Mommy|Dad|Daddy|Gran|Grandma|Grandpa|Granny|Sir|Madam|Doctor|Professor)\b)"
-"""Excludes the words for a listener: *I came from Bern, sorry, Mum* corrects nothing."""
+"""Excludes words with which the user addresses the listener: *I came from Bern, sorry, Mum* corrects nothing."""
 _SLIPS = tuple(
     re.compile(rf"(?<![\w'’-])(?<!\d[.,:])(?P<wrong>{wrong}(?i:{mark}) ){right}")
     for wrong, mark, right in (
@@ -26,14 +26,17 @@ _SLIPS = tuple(
 )
 """Two names, two numbers, or two nouns with articles, and between them the words with which the user corrects the first.
 
-Other words may follow the second number only after *no,*. *There were 10, no 2 alike* corrects nothing.
+Other words may follow the second number only if the correction contains *no* with a comma: *There were 10, no, 12
+people*. *There were 10, no 2 alike* corrects nothing.
 """
 _DENIAL = re.compile(r"\b(?:not|never|no)\b|n['’]t\b", re.IGNORECASE)
 _STOP = re.compile(r"[.!?]\s")
 
 
 def slips(text: str) -> Iterator[tuple[int, int]]:
-    """Yield the places of the words that the user takes back in the same sentence. Denials are no slips.
+    """Yield the places of the words that the user takes back in the same sentence.
+
+    After a denial (*not*, *never*, *no*) in the sentence, nothing counts as taken back.
 
     Example:
         >>> [text[start:end] for text in ["I'm 34, no 35"] for start, end in slips(text)]

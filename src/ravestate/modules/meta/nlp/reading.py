@@ -1,8 +1,8 @@
 """The reading of an utterance by a language model, which may replace parts of the module's own analysis.
 
 The server should constrain the model's answer to a JSON schema, so that the answer is a `Reading`. If the server does not,
-the module's own analysis stays. The model may also answer the user's question, or leave words out. `Reading.normal` rejects
-such a reading.
+the module's own analysis stays. Sometimes the model wrongly answers the user's question, or leaves words out.
+`Reading.normal` rejects such a reading.
 """
 
 from __future__ import annotations
@@ -25,11 +25,11 @@ from .answer import YesNo
 from .question_word import QuestionWord
 
 LONGEST = 400
-"""The maximum number of characters of an utterance for the model, because longer utterances take too long."""
+"""If an utterance has more characters than this, the model does not read it, because this would take too long."""
 FAITHFUL = 0.6
-"""The least share of letters that the written text and the user's text must have in common."""
+"""The least share of letters that `Reading.written` and the user's text must have in common."""
 MOST_SKIPPED = 64
-"""The maximum number of utterances that are analysed without the model after it has failed repeatedly."""
+"""If the model fails repeatedly, at most this many utterances are analysed without it before it is tried again."""
 
 _PROMPT = """\
 You annotate what a user types to a robot. Answer in JSON.

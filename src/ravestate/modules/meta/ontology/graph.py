@@ -111,7 +111,10 @@ class Graph:
                 self._forget(other)
 
     def related(self, node: Node, relation: str, /, *, back: bool = False) -> list[Node]:
-        """Return the targets of a relation from `node`; with `back`, its sources. The oldest node comes first."""
+        """Return the nodes to which `node` has this relation, oldest first.
+
+        With `back`, return the nodes that have this relation to `node`.
+        """
         self._types.check_end(node.type, relation, back=back)
         edge = f"[r:{self._store.relation(relation)}]"
         pattern = f"<-{edge}-" if back else f"-{edge}->"
@@ -219,7 +222,7 @@ class Graph:
         return going
 
     def purge(self) -> None:
-        """Remove the bytes of forgotten nodes from the file now, not when memory has nothing else to do."""
+        """Remove the bytes of forgotten nodes from the file now, instead of waiting until memory has nothing else to do."""
         self._store.purge()
 
     def _forget(self, node: Node) -> list[Node]:
@@ -310,7 +313,10 @@ class Graph:
         return sorted(found.values(), key=_age)
 
     def _node(self, raw: Raw) -> Node | None:
-        """Return the node that a raw node stands for, with its declared properties; None if its type is undeclared."""
+        """Return the node that a raw node stands for, with its declared properties.
+
+        Return None if its type is undeclared, or if its id is damaged.
+        """
         id = raw.values.get("id")
         if raw.label not in self._types or not isinstance(id, str) or not id.startswith(f"{raw.label}:"):
             return None  # the node is on a damaged page

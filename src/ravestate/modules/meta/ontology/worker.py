@@ -29,7 +29,7 @@ class StoreWorker:
     """A thread that runs jobs on a store, one at a time. In a pause, the store does its postponed work.
 
     A process opens a memory file only once, for all of its contexts. A second opening would succeed, and ruin the file.
-    The thread is a daemon, so a server that hangs cannot keep the process alive.
+    A store may also be on a database server. The thread is a daemon, so the process can end even if that server hangs.
     """
 
     def __init__(self, place: str, make: Callable[[], Store]) -> None:

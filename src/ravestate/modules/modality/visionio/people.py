@@ -17,10 +17,10 @@ from .visitors import ALIKE
 RELATION = "has_face"
 """The relation from a person to their faces."""
 MERGE = 0.45
-"""Two faces up to this distance surely belong to one person. If two people have the same name and such faces, memory
-merges them."""
+"""Two faces whose vectors are at most this far apart surely belong to one person. If two people in memory have the same
+name, and faces this near to each other, memory merges them."""
 MARGIN = 0.05
-"""If the second nearest person is at most this much farther away than the nearest one, the agent recognises nobody."""
+"""If the distances to the two most similar people differ by at most this, the agent recognises neither."""
 
 
 @dataclass(frozen=True, slots=True)

@@ -1,4 +1,4 @@
-"""The rules that show the words, the agent's name and the agent's work on the page."""
+"""The rules that show on the page what is said, what the agent is called, and that the agent is working."""
 
 from __future__ import annotations
 
@@ -7,7 +7,7 @@ from ravestate.modules import interloc, rawio
 
 from .names import module, page
 
-SLOW = 0.3  # the page shows that the agent is working when `rs.pressure` has lasted this many seconds
+SLOW = 0.3  # once `rs.pressure` has lasted this many seconds, the page shows that the agent is working
 
 rawio.carry(module, page)
 

@@ -11,8 +11,8 @@ from .names import filled, late, lost, module, promised, waiting
 ENOUGH = 5.0
 """The minimum number of seconds between two fillers."""
 REMEMBERED = 120.0
-"""For this many seconds, the module remembers which words of the user an output answers. After that, an output counts
-as an answer to the user's latest words."""
+"""An output within this many seconds of the words that led to it counts as an answer to those words. A later output
+counts as an answer to the user's latest words."""
 
 
 @module.rule(
@@ -25,11 +25,15 @@ as an answer to the user's latest words."""
     background=True,
 )
 async def notice_no_answer(ctx: rs.RuleContext) -> None:
-    """Raise `impatient` when a rule has run for a while without output. (`idle` raises the signal when rules wait.)"""
+    """Raise `impatient` when a rule has run for a while without output.
+
+    This covers a rule that is running. `idle` raises the same signal when a ready rule waits for other rules.
+    """
     await ctx.sleep(ctx.settings.unanswered_after)
     last = ctx[filled]
     if last is not None and ctx.now - last < ENOUGH:
-        ctx[promised] = True  # no filler follows so soon, but the user still waits
+        # Too soon for another filler, but the agent still owes an answer: `admit_delay` and `admit_loss` need this flag.
+        ctx[promised] = True
     ctx.emit(idle.impatient)
 
 
@@ -68,7 +72,10 @@ async def fill_the_pause(ctx: rs.RuleContext) -> rs.Resign | None:
     background=True,
 )
 async def notice_answer(ctx: rs.RuleContext) -> rs.Resign | None:
-    """Note that the answer has come or has begun, or that the user says something else."""
+    """Record in `promised` and `waiting` that the answer has come or has begun.
+
+    Also record there that the user has said something else.
+    """
     said = ctx.payload(rawio.output.changed)
     if said is not None and said in (ctx[verbaliser.last].get("filler"), ctx[verbaliser.last].get("late")):
         return rs.Resign("this is a filler, or the notice of a delay")

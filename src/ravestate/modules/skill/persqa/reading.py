@@ -1,6 +1,7 @@
 """The facts that an utterance tells or asks for.
 
-The tagger finds the values that the user states or denies. The statements give the questions, and the topics that end as a whole (*I quit my job*).
+The tagger finds the values that the user states or denies. The statements of the analysis (`nlp.Statement`) show what the
+user asks, and which topics lose all their values (*I quit my job*).
 """
 
 from __future__ import annotations
@@ -21,23 +22,23 @@ from .values import value_of
 from .wording import Facts, alike, among, without
 
 SURE = 0.5
-"""The least confidence of a value."""
+"""If the tagger is less confident of a value than this, the value does not count."""
 CLEAR = 0.9
-"""The confidence at which a sentence tells a value whatever the agent has asked."""
+"""If the tagger is at least this confident of a value, the value counts regardless of the agent's question."""
 OPENING = 30
-"""The maximum number of characters before a name that only its words show: *hello there, my name is*."""
+"""A name that the tagger does not find, but that follows words such as *my name is*, must start before this character."""
 LONGEST = 1_000
-"""The tagger reads no text that is longer than this number of characters."""
+"""If a text has more characters than this, the tagger does not read it."""
 FEW = 2
-"""The maximum number of words that are a value although the tagger does not know them."""
+"""If an answer has at most this many words, it is a value, even if the tagger finds none in it: *ludo*."""
 MINE = frozenset(["mine", "ours"])
 """Subjects that stand for something of the user's: *mine is Ada*, after *which dog is yours?*."""
 PEOPLE = frozenset(topic.name for topic in TOPICS.values() if topic.kind in ("people", "name"))
 _UNUSUAL = re.compile(r"[^\w\s.,;:!?'’\"-]")
-"""Characters that no word of English has. The network has not learnt them."""
+"""Characters that no word of English has. The tagger was not trained on them."""
 _PARTLY = re.compile(r"(?:n['’]t|\bnot) (?:just|only|merely|simply)\b|\bbecause\b", re.IGNORECASE)
 _JOINED = re.compile(r"[^.!?]*\band\b[^.!?]*", re.IGNORECASE)
-"""The words between two values that do not correct each other."""
+"""If these words stand between two values, an unsure second value does not correct the first: *and*, within a sentence."""
 _SPEAKING = frozenset(("speak", "talk", "call", "be"))
 _NAMING = frozenset(("call", "name", "christen", "baptise", "dub", "say", "use", "prefer", "be"))
 """Verbs with which users say their own name: *Ada speaking*, *just say Kim*."""
@@ -101,7 +102,7 @@ class Reader:
     def facts(self) -> list[Fact]:
         """Return the facts that the user states or denies."""
         told: dict[str, tuple[str, ...]] = {}
-        clear: dict[str, int] = {}  # the ends of clear values: "I grew up in Cairo and studied physics in Delft"
+        clear: dict[str, int] = {}  # topic → the position in the text after its last clear value
         gone = self._ended()
         for tag in self.tags:
             topic = self._topic(tag)
@@ -136,7 +137,10 @@ class Reader:
         }
 
     def covers(self, said: nlp.Statement) -> bool:
-        """Return whether a statement tells the value of a topic, so that it is no free statement."""
+        """Return whether a statement tells the value of a topic.
+
+        If not, it may be a *free statement*, which belongs to no topic: *Jonas plays the violin*.
+        """
         parts = [part.text.lower() for part in (said.object, *said.phrases) if part.text]
         parts += [self.span(said).lower()]
         values = (tag.text.lower() for tag in self.tags if tag.label not in PEOPLE)
@@ -184,7 +188,10 @@ class Reader:
         return favourite(f"favourite {nouns[-1]}") if nouns and nouns[-1] else ""
 
     def _describes_work(self, tag: Tag) -> bool:
-        """Return whether words describe a job instead of naming it: *drive a bus*. They are a free statement."""
+        """Return whether words describe a job instead of naming it: *drive a bus*.
+
+        An utterance with such words is a free statement, and tells no occupation.
+        """
         first = next((word for word in self.tree.words if word.start <= tag.start < word.end), None)
         return (
             tag.label == "occupation"
@@ -194,7 +201,7 @@ class Reader:
         )
 
     def _is_over(self, tag: Tag) -> bool:
-        """Return whether a verb for a state, in the past tense, states a value: *I lived in Rome*."""
+        """Return whether a value no longer holds, because its verb (such as *live*) is in the past tense: *I lived in Rome*."""
         if tag.negated or tag.label in LASTING or tag.label in PEOPLE:
             return False
         for said in self.seen.statements:
@@ -217,7 +224,10 @@ class Reader:
         return any(tag.text in self.span(said) for said in mine)
 
     def _is_contrasted(self, tag: Tag) -> bool:
-        """Return whether a value replaces a known one, so that the known one shows the topic: *not Leeds but Leipzig*."""
+        """Return whether a value replaces a known one: *not Leeds but Leipzig*.
+
+        Its topic is then the topic of the known value, not the tagger's label.
+        """
         verbs = any(said.verb != "be" for said in self.seen.statements)
         known = [value for values in self.known.values() for value in values]
         pairs = [one for one in self.seen.contrasts if one.right.text == tag.text]
@@ -237,7 +247,10 @@ class Reader:
         return [word for word in self.tree.words if tag.start <= word.start < tag.end]
 
     def _names_another(self, word: Word) -> bool:
-        """Return whether a name does something, is done something to, or belongs to *it* or to *me and ...*."""
+        """Return whether a name is somebody else's.
+
+        Such a name is the subject or object of most verbs, is given to *it* or *her*, or follows *me and*.
+        """
         head = self.tree.head(word)
         if word.dep == "conj":
             return head.low in ("me", "i", "us")
@@ -248,7 +261,7 @@ class Reader:
         return word.dep == "oprd" and any(other.low in _OTHERS for other in self.tree.children(head, "dobj", "nsubj"))
 
     def _ended(self) -> dict[str, tuple[str, ...]]:
-        """Return the topics that end as a whole: *I quit my job*, *I have no hobbies*."""
+        """Return the topics that lose all their values: *I quit my job*, *I have no hobbies*."""
         ended: dict[str, tuple[str, ...]] = {}
         text = self.tree.text.lower()
         for said in self.seen.statements:
@@ -301,7 +314,10 @@ class Reader:
         return None
 
     def _confirmed(self, said: nlp.Statement) -> Fact | None:
-        """Return the fact in a question for yes or no: the question, turned into a statement, tells it."""
+        """Return the fact that a yes-no question asks about.
+
+        To find it, turn the question into a statement, and tag this statement.
+        """
         found = _INVERTED.search(self.tree.text)
         if found is None or not (said.subject.person == "I" or said.subject.of("I")):
             return None
@@ -407,7 +423,7 @@ class Reader:
 _INVERTED = re.compile(
     r"\b(do|did|am|was|have|are|is) (i|we|(?:my|our) (?:favou?rite )?\w+(?:'s name| name)?) ([^?]+)\?", re.IGNORECASE
 )
-"""A question for yes or no about the user: the auxiliary, the subject and the rest."""
+"""A yes-no question about the user: the auxiliary, the subject and the rest."""
 
 
 def _holds(tag: Tag) -> bool:

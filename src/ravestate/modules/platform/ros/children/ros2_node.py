@@ -247,7 +247,7 @@ class Ros2Node:
             self._executor.wake()
 
     def cancel(self, channel, number):
-        """Cancel a goal, or forget a call. Otherwise, a call that is never answered would stay in memory."""
+        """Cancel a goal; or forget a call, so that a call without an answer does not stay in memory."""
         call = self._calls.pop((channel, number), None)
         if call is not None:
             call["cancelled"] = True
@@ -267,7 +267,9 @@ class Ros2Node:
             return
         if kind == "action":
             thing.destroy()
-        else:  # the node must forget the entity first, because the executor keeps failing on a destroyed entity
+        else:
+            # Destroy the entity through the node, which forgets it first. The executor would fail again and again on a
+            # destroyed entity that the node still lists.
             forget = {"subscriber": "subscription", "server": "service"}.get(kind, kind)
             getattr(self._node, f"destroy_{forget}")(thing)
         self._executor.wake()

@@ -1,6 +1,8 @@
-"""An utterance as the listener sees it: tags for the table of answers (order.yaml), and roles.
+"""The *tags* and *roles* that the listener notices in an utterance.
 
-`meaning` finds the feelings, acts and moments, and `responses` the replies that suit.
+The listener is the part that chooses the agent's reply. The tags select rows of the table of answers (order.yaml), and the
+roles fill its phrases. meaning.py finds the feelings, acts and moments; responses.py finds the replies that suit. The
+*bank* (bank.py) has thousands of utterances with replies.
 
 A *moment* is a situation in a conversation that has its own phrases, such as good news. A *move* is the next step of a
 good listener, such as to console. A *role* is a placeholder in a phrase. An *act* is what an utterance does, such as
@@ -41,17 +43,19 @@ from .tongue import is_number, tongue_of
 from .turns import is_leaving, turns_in
 
 CHANGING = "no_questions"
-"""The moment in which the user wants no more questions. No entry of the bank takes precedence over it."""
+"""The moment in which the user wants no more questions. It takes precedence over all entries of the bank."""
 BARE = 3
-"""The maximum number of words of an answer that only says yes or no. The bank is not searched for such an answer."""
+"""If an answer only says yes, no or unsure, and has at most this many words, the bank's entries do not count."""
 PARTING = 0.66
-"""The minimum confidence in a farewell as the next move at which the utterance counts as a farewell."""
+"""If the classifier is at least this confident that the next move is a farewell, a short utterance itself counts as
+one."""
 SHORTLY = 7
-"""The maximum number of words of a statement that is repeated as a whole."""
+"""If a statement has at most this many words, the agent may repeat it as a whole."""
 LONG = 12
-"""The minimum number of words of an utterance that probably gives the reason for the user's feeling."""
+"""If an utterance has at least this many words, it probably gives the reason for the user's feeling."""
 UNKNOWN = ("heard_of", "about_you")
-"""Kinds of questions (asks.yaml) that only another module, or an area of life, can answer."""
+"""Kinds of questions (asks.yaml) to which this skill has an answer only if their area of life (areas.yaml) has one.
+Otherwise only another module can answer."""
 _OFFER = re.compile(r"(?:do you want|would you like|shall i|can i).{0,9} (?:know|hear|see|tell|show)\b", re.IGNORECASE)
 """The user offers to tell the agent something."""
 _MACHINES = word_set("robot bot machine computer program ai chatbot")
@@ -110,9 +114,10 @@ class Hearing:
     responses: list[Response] = field(default_factory=list[Response])
     """The replies that suit the utterance, the best first."""
     follow_up: Moment | None = None
-    """The follow-up of the last entry that the utterance resembles."""
+    """The follow-up that the utterance resembles. It belongs to the entry whose reply the agent gave last, or to an earlier
+one."""
     rest: Moment | None = None
-    """The follow-up of the last entry for any other statement."""
+    """The last entry's follow-up for statements that resemble none of its follow-ups."""
     sad: bool = False
     """Whether the utterance has a sad feeling."""
 

@@ -16,14 +16,15 @@ from .roles import TURNED
 from .state import State
 
 LONGEST = 9
-"""The maximum number of words of a sentence that questions the agent's answer."""
+"""If a sentence such as *I meant the bread* has no other sign of a repair, it may have at most this many words. A sentence
+that rejects or questions the answer may have three more."""
 _LEAD = re.compile(r"^(?:(?:no|nope|wait|oh|but|well|huh|um|uh|eh|hey|sorry|hm+|and|ok|okay|again) )+")
 _MEANT = re.compile(
     r"^i (?:(?P<firm>meant|was (?:asking|talking|speaking)(?: you)?|am (?:asking|talking)|asked(?: you)? (?=about|for|if|whether))"
     r"|mean|said|asked(?: you)?|talked|spoke|wanted to know)(?: (?:about|for|of|that|whether|if))* (?P<what>(?!to\b|it\b|so\b|that\b|this\b|not\b"
     r"|something\b|yes\b|no\b|nothing\b).+)$"
 )
-"""A sentence that says what the user meant, in the plain form."""
+"""A sentence in plain form (see `plain`) that says what the user meant."""
 _TOLD_TO = re.compile(r"\b(?:with|to) (?:my|a|the|him|her|them|somebody|some)\b|\b(?:yesterday|last|ago|today)\b")
 """Words of a report: *I was talking about it with my mother*."""
 _REJECTS = re.compile(
@@ -67,7 +68,7 @@ class Repair:
 
 
 def repair_in(seen: Analysis, state: State) -> Repair | None:
-    """Return the correction or question about the agent's last answer that an utterance contains; None if it has none."""
+    """Return how an utterance corrects or questions the agent's last answer; None if it does neither."""
     if not state.said:
         return None
     parts = [part for one in seen.sentences[:5] for part in _CLAUSES.split(one)]
@@ -126,7 +127,7 @@ def _asks(text: str) -> bool:
 
 
 def _mark(text: str, state: State) -> str:
-    """Return the kind of repair of a sentence in the plain form; empty for any other sentence."""
+    """Take a sentence in plain form, and return which kind of repair it is; empty if it is none."""
     if _REPEATED.search(text):
         return "repeated"
     if _WHY.search(text):
