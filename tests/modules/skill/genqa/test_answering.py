@@ -11,9 +11,10 @@ import yaml
 
 import ravestate as rs
 from ravestate.modules.skill.genqa import Settings
-from ravestate.modules.skill.genqa.answering import Answer, Answerer
+from ravestate.modules.skill.genqa.answering import Answer, Answerer, together
 from ravestate.modules.skill.genqa.document import Document, Passage
 from ravestate.modules.skill.genqa.index import Index, IndexedFile
+from ravestate.modules.skill.genqa.shipped import OWN
 
 QUESTIONS = Path(__file__).with_name("questions.yaml")
 
@@ -199,3 +200,20 @@ def test_an_injection_in_a_document_has_no_effect_on_the_answer(tmp_path: Path) 
     answerer = Answerer(path, collection=False)
     assert answerer.answer("Who invented the Zorbex engine?").text.endswith("Mira Kolm in 1987.")
     answerer.close()
+
+
+@pytest.mark.parametrize(
+    ("sources", "named"),
+    [
+        (("Factbook", "Factbook"), "Factbook"),
+        (("Factbook", "Atlas"), "Factbook and Atlas"),
+        (("Factbook", OWN), OWN),
+        (("", "Factbook"), OWN),
+        (("", ""), ""),
+    ],
+)
+def test_an_answer_to_several_questions_names_no_source_that_has_only_a_part_of_it(
+    sources: tuple[str, str], named: str
+) -> None:
+    answers = [Answer("Who?", "She.", source, confidence=0.9) for source in sources]
+    assert together(answers).source == named

@@ -78,18 +78,22 @@ class Answer:
 
 
 def together(answers: Sequence[Answer]) -> Answer:
-    """Return the answers to several questions of one utterance as one answer, with the lowest of their confidences."""
+    """Return the answers to several questions of one utterance as one answer, with the lowest of their confidences.
+
+    The answer names its sources only if each part comes from a document. Otherwise it would name a wrong source for
+    the parts that were written for Ravestate.
+    """
     if len(answers) == 1:
         return answers[0]
     texts = dict.fromkeys(
         answer.text if answer.text.endswith((".", "!", "?")) else f"{answer.text}." for answer in answers
     )
-    sources = dict.fromkeys(answer.source for answer in answers if answer.source not in ("", OWN))
-    known = next((answer.source for answer in answers if answer.source), "")
+    sources = dict.fromkeys(answer.source for answer in answers)
+    unnamed = len(sources) > 1 and not {"", OWN}.isdisjoint(sources)
     return Answer(
         " ".join(answer.question for answer in answers),
         " ".join(texts),
-        " and ".join(sources) or known,
+        OWN if unnamed else " and ".join(sources),
         answers[0].title,
         min(answer.confidence for answer in answers),
         tuple(candidate for answer in answers for candidate in answer.candidates),
