@@ -157,8 +157,9 @@ async def test_why_not_is_answered_with_the_right_reason() -> None:
 async def test_a_waiting_rule_can_be_explained() -> None:
     async with board() as app, Look(app) as look:
         await look.begin()
+        look.tell("pause")  # otherwise, the rule may have stopped waiting before the board answers
         look.tell("say", text="Hello")
-        await look.until("waits", rule="gossip:talk")
+        await step_until(look, "waits", rule="gossip:talk")
         look.tell("explain", rule="gossip:talk")
         found = await look.answer("explained")
     (activation,) = found["activations"]
