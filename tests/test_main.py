@@ -55,7 +55,6 @@ def test_text_for_people_has_question_marks_for_what_a_terminal_cannot_show() ->
 BUFFERED = {name: value for name, value in os.environ.items() if name != "PYTHONUNBUFFERED"}
 
 
-@pytest.mark.skipif(not Path("/dev/full").exists(), reason="the system has no /dev/full")
 @pytest.mark.parametrize("environment", [BUFFERED, {**BUFFERED, "PYTHONUNBUFFERED": "1"}])
 @pytest.mark.parametrize("command", [["check", "rawio"], ["graph", "rawio"]])
 def test_output_that_cannot_be_written_gives_a_message(command: list[str], environment: dict[str, str]) -> None:

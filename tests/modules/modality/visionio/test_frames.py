@@ -85,12 +85,15 @@ def test_the_method_taken_waits_until_a_call_of_next_returns_the_picture_or_the_
 def test_each_waiting_call_of_next_gets_a_picture() -> None:
     async def watch() -> None:
         frames = Frames()
-        async with asyncio.TaskGroup() as group:
-            first, second = (group.create_task(frames.next()) for _ in range(2))
-            await asyncio.sleep(0)
+
+        async def show() -> None:
             frames.put(b"1")
             await frames.taken()
             frames.put(b"2")
+
+        async with asyncio.TaskGroup() as group:
+            first, second = (group.create_task(frames.next()) for _ in range(2))
+            group.create_task(show())  # tasks begin in order, so both calls wait before the first picture comes
         assert sorted(frame.data for frame in (first.result(), second.result()) if frame is not None) == [b"1", b"2"]
 
     asyncio.run(asyncio.wait_for(watch(), 10))

@@ -4,10 +4,6 @@ import asyncio
 from types import SimpleNamespace
 from typing import Any
 
-import pytest
-
-pytest.importorskip("nio")
-
 from ravestate.modules.platform.chats import Outgoing
 from ravestate.modules.platform.matrixio.carrier import MatrixCarrier
 

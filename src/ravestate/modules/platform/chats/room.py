@@ -109,7 +109,7 @@ class Room:
         for event in events:
             try:
                 message = read(event)
-            except Exception:
+            except Exception:  # each messenger's library has its own errors for an event of an unexpected shape
                 self.log.exception("an event cannot be read, and is ignored")
                 continue
             if message is not None and (message.kind == "left" or self.admits(message)):
