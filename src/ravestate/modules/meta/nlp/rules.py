@@ -4,18 +4,20 @@ from __future__ import annotations
 
 import asyncio
 import contextlib
+from collections.abc import Sequence
 
 import ravestate as rs
 from ravestate.errors import PlatformError
 from ravestate.language.bundled import ModelMissing, warn_once
 from ravestate.language.loading import wait_for_prompt
+from ravestate.language.matcher import Matcher
 from ravestate.modules import interloc, rawio
 
 from . import names
-from .analysis import analyse, load_models
+from .analysis import Analysis, analyse, load_models
 from .intent import intent_matcher
 from .names import Settings, module
-from .pipeline import pipeline
+from .pipeline import Pipeline, pipeline
 from .reading import Reading, model_reader
 
 SIGNALS = {"intent_play": names.intent_play, "intent_hi": names.intent_hi, "intent_bye": names.intent_bye}
@@ -67,6 +69,20 @@ async def disconnect(ctx: rs.RuleContext) -> None:
         await reader.close()
 
 
+def analysed(
+    text: str,
+    parser: Pipeline,
+    called: Sequence[str],
+    present: Sequence[str],
+    designed: Matcher | None,
+    reading: Reading | None = None,
+) -> Analysis:
+    """Return the analysis of a text, as `analyse` does. The first text waits until the models are loaded."""
+    with contextlib.suppress(PlatformError):  # `learn` reports the error
+        load_models()
+    return analyse(text, parser, called, present, designed, reading)
+
+
 async def read(ctx: rs.RuleContext, text: str) -> Reading | None:
     """Return the language model's reading of a text; None without a model, or if the model fails."""
     reader = ctx[names.reader]
@@ -107,9 +123,9 @@ async def understand(ctx: rs.RuleContext) -> None:
         designed = await asyncio.to_thread(intent_matcher, intents)
         reading = asyncio.create_task(read(ctx, heard))
         try:
-            seen = await asyncio.to_thread(analyse, heard, parser, called, present, designed)
+            seen = await asyncio.to_thread(analysed, heard, parser, called, present, designed)
             if (found := await reading) is not None:
-                seen = await asyncio.to_thread(analyse, heard, parser, called, present, designed, found)
+                seen = await asyncio.to_thread(analysed, heard, parser, called, present, designed, found)
         finally:
             reading.cancel()
     words = seen.tree.words

@@ -10,7 +10,7 @@ from datetime import UTC, datetime
 from typing import Any, TypeVar
 
 import ravestate as rs
-from ravestate.errors import RavestateError
+from ravestate.errors import PlatformError, RavestateError
 from ravestate.language.bundled import ModelMissing, warn_once
 from ravestate.language.loading import wait_for_prompt
 from ravestate.modules import idle, interloc, nlp, ontology, rawio, verbaliser
@@ -73,7 +73,7 @@ async def ask(ctx: rs.RuleContext) -> rs.Resign | None:
 
 @module.rule(when=rs.startup, background=True)
 def learn(ctx: rs.RuleContext) -> None:
-    """Learn the examples. Until that is done, only input that matches an example word for word is recognised."""
+    """Learn the examples in the background, so that the first utterance does not have to wait."""
     wait_for_prompt()
     try:
         load_examples()
@@ -117,6 +117,8 @@ async def listen(ctx: rs.RuleContext) -> None:
     seen = ctx.payload(nlp.analysis.changed)
     if seen is None:
         return
+    with suppress(PlatformError):  # `learn` reports the error
+        await asyncio.to_thread(load_examples)
     before = acquaintance_of(ctx)
     meaning = await asyncio.to_thread(
         understand, seen, before.talk, before.known, ctx.now, settings.within, tuple(before.told.values())

@@ -81,7 +81,7 @@ async def use(ctx: rs.RuleContext) -> rs.Resign | None:
 
 @module.rule(when=rs.startup, background=True)
 def learn(ctx: rs.RuleContext) -> None:
-    """Learn the examples of small talk in the background. Until that is done, only exact examples are recognised."""
+    """Learn the examples of small talk in the background, so that the first utterance does not have to wait."""
     wait_for_prompt()
     try:
         learn_all()

@@ -5,10 +5,12 @@ from __future__ import annotations
 import asyncio
 import random
 import threading
+from contextlib import suppress
 from dataclasses import replace
 from functools import cache
 
 import ravestate as rs
+from ravestate.errors import PlatformError
 from ravestate.modules import interloc, nlp
 from ravestate.modules.meta.nlp.analysis import analyse
 from ravestate.modules.meta.nlp.pipeline import pipeline
@@ -133,7 +135,12 @@ async def listen(ctx: rs.RuleContext, heard: Heard) -> str:
 
 
 def _answer(heard: Heard, state: State, chance: random.Random) -> Answer:
-    """Return the listener's answer. If users say their name and something else, answer both."""
+    """Return the listener's answer. If users say their name and something else, answer both.
+
+    The first answer waits until the examples are learnt.
+    """
+    with suppress(PlatformError):  # the rule `learn` reports the error
+        listener().load()
     told = None if heard.seen is None else heard.seen.introduction
     closing = None if heard.seen is None else heard.seen.closing
     if told is None and closing is not None and (closing.remarks or closing.returned):
