@@ -5,7 +5,8 @@ meets it. With consent, the activation becomes a run of the rule. Every clause a
 holds no spike yet. No object represents a stand-by: the engine creates an object only when the first spike comes.
 
 - `GATHERING`: the activation lacks a spike, a spike is too young, or a predicate on a slot is false.
-- `READY`: the activation holds all its spikes, all are old enough, and it asks for consent or, if it needs none, starts.
+- `READY`: the activation holds all its spikes, all are old enough, and it asks for consent or, if it needs none,
+  starts.
 - `WAITING`: a group refused consent; the activation asks again when something changes.
 - `RUNNING`: the rule's function runs.
 - `CANCELLING`: the engine has cancelled the function, which is cleaning up.
@@ -101,8 +102,8 @@ class Activation:
         state: The `State`, as an integer.
         missing: The needs of the clause that no spike meets yet, as bits.
         ripens: The time (seconds) at which all its spikes will be old enough; `NEVER` unless a spike is too young.
-        newest: In the queue of ``free.py``: the number of the newest spike that it held when it became ready.
-        place: Its place in the queue of ``free.py``; None if it is not there, or is still in the queue's batch.
+        newest: The number of the newest spike that the activation held when it joined the queue of ``free.py``.
+        place: Its place in the queue of ``free.py``; None if the activation is not in the queue, or is in its `batch`.
         patience_ends: Key: a group in which other activations wait for this one; value: the time at which this
             activation's patience ends in that group (seconds; L16).
         refusal: The reasons for which it waits; None unless it waits.

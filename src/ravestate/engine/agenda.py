@@ -2,13 +2,13 @@
 
 1. Activations that need no consent start first: their rules write no slot, or all their constraints are detached.
 2. When none of these is left, the other ready activations ask for consent (``consent.py``). Activations with older
-   causes ask first. If causes are equal, the activation with the greatest utility asks first. By then, the rules of
-   step 1 that never suspend have ended.
+   causes ask first. If causes are equal, the activation with the greatest effective utility asks first. By then, the
+   rules of step 1 that never suspend have ended.
 3. When no activation may start, the engine updates the built-in flags. Only the change of ``core:activity`` to true
    comes earlier, before step 1 (``parts.py``).
 
 When a rule ends, the activations that wait for it ask again in the same instant. They ask after all rules that end in
-this instant have ended. So the caller of `Engine.effects` must first give the engine all events of the instant.
+this instant have ended. So the caller must give the engine all events of the instant before it calls `Engine.effects`.
 """
 
 from __future__ import annotations
@@ -28,7 +28,7 @@ from ravestate.engine.state import State
 from ravestate.engine.stuck import Stuck
 
 BATCH: Final = 100
-"""Start at most this many free activations at a time. Then the caller reports the events of these runs."""
+"""How many activations `start_free` starts at most. Then the caller reports the events of the runs."""
 
 Turn = tuple[int, float, int, int, Activation]
 """A place in the queue of activations that ask: the number of the activation's oldest causal group, its sort key
@@ -46,7 +46,7 @@ class Agenda:
         self.slots = slots
         self.consent = consent
         self.queue = Line()
-        """The activations that ask in this instant, the best first."""
+        """The activations that ask in this instant, in the order in which they ask."""
         self.places: dict[Activation, Any] = {}
         """Activation in the queue → its valid place. The queue may also hold outdated places of the activation."""
         self.recovering = False
@@ -234,7 +234,7 @@ class Agenda:
                 heapq.heappush(breakers, (state.order(best), best))  # its utility has changed since
                 continue
             freed = no_longer_stuck(best, stuck)
-            if not found.issuperset(freed):  # a change after the search has freed activations, so search again
+            if not found.issuperset(freed):  # a change after the search has freed some: search again next round
                 for other in freed:
                     stuck.discard(other)
                     state.refused[other] = None
@@ -249,7 +249,7 @@ class Agenda:
 
 
 def _is_taken(activation: Activation) -> bool:
-    """Return whether each of the activation's groups has one of the activation's slots taken."""
+    """Return whether a run has taken a slot of the activation in every one of the activation's groups."""
     slots = activation.clause.rule.slotset
     for group in activation.firm_groups():
         if not group.taken or group.taken.keys().isdisjoint(slots):

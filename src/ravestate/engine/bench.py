@@ -1,6 +1,6 @@
-"""A bench. A clause with two constraints takes two spikes. On a bench, first spikes wait for the second, their *counterpart*.
+"""A bench: first spikes of a clause that wait for the same second spike, their *counterpart*.
 
-The spikes belong to a *half*: a set of constraints for one signal, which keeps their first spikes without activations
+A clause with two constraints takes two spikes. A *half* keeps the first spikes of such a clause, without activations
 (``halves.py``). ``benches.py`` explains the use of benches.
 """
 

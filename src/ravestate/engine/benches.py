@@ -1,21 +1,21 @@
 """Benches: spikes that wait together for a second spike, their *counterpart*.
 
-A clause with two constraints, its *needs*, takes a pair of spikes. The spike that arrives first is the *first spike*. It
-waits in a *half* (``halves.py``). Suppose that a hundred first spikes wait when a counterpart arrives. The counterpart
-completes a hundred pairs. Only one pair runs, and the first spikes of the other pairs take the next counterpart (L12).
-So only the oldest pair gets an activation, the *head* of the bench. The other first spikes stay on the bench, and the
-whole bench takes the next counterpart.
+A clause with two constraints, its *needs*, takes a pair of spikes. The spike that arrives first is the *first spike*.
+It waits in a *half* (``halves.py``). Suppose that a hundred first spikes wait when a counterpart arrives. The
+counterpart completes a hundred pairs. Only one pair runs, and the first spikes of the other pairs take the next
+counterpart (L12). So only the oldest pair gets an activation, the *head* of the bench. The other first spikes stay on
+the bench, and the whole bench takes the next counterpart.
 
 A clause has benches only if no better clause competes with it (`Half.sole`). Its activations wait for no rival, so a
 group refuses them only while a slot is taken there. If a group refuses the head, the engine creates a new head for the
 next first spike. The new head asks in the same round of consent.
 
-So the pairs ask in the order of their first spikes, the oldest first. This agrees with consent, in which older causal
-groups go first. The reason is that each of these spikes begins a group, because only detached rules may raise its
-signal. Before a group merges, its spikes leave their benches.
+So the pairs ask in the order of their first spikes, the oldest first. In consent, older causal groups go first. The two
+orders agree: a first spike comes from outside or from a detached rule, and so begins a group. Before a group merges,
+its spikes leave their benches.
 
-`Consent` treats each spike on a bench with a counterpart as a ready activation. Other activations with less utility wait
-for this one.
+`Consent` treats each spike on a bench with a counterpart as a ready activation. Activations of clauses with less
+utility wait for this activation.
 """
 
 from __future__ import annotations
@@ -42,7 +42,7 @@ class Benches:
         self.state = holdings.state
 
     def seat(self, half: Half, partner: Spike) -> None:
-        """Give a new counterpart to all first spikes that wait in a half without one."""
+        """Give a new counterpart to all first spikes that wait in a half without a counterpart."""
         del self.state.halves[half]
         self._place(self.state.pools.pop(half), partner)
 
@@ -64,7 +64,7 @@ class Benches:
     def unbench(self, spike: Spike) -> None:
         """Create an activation for each pair of `spike` and a counterpart, before these pairs lose one of their spikes.
 
-        Only an activation that loses a spike takes the place of that spike by another one (L12).
+        An activation that loses a spike may take another one instead (L12). A pair on a bench cannot.
         """
         state = self.state
         for half in state.halves_of(spike) if state.benches else ():

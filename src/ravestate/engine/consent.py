@@ -5,12 +5,13 @@ activation writes. It also refuses while a *rival* stands in the group: another 
 greater effective utility, and may still become ready. The rival must also hold a spike of the group, or lack a signal
 that a rule of the group may cause.
 
-If only an input or a rule of another group can make a rival ready, the rival is under *pressure*. When its patience
-ends, the activation stops waiting for it. A rival gets its patience once in each group (L16).
+If only an input or a rule of another group can make a rival ready, the rival is under *pressure*: it has a limited time
+to become ready, its *patience*. When the patience ends, the activation stops waiting for the rival. A rival gets its
+patience once in each group (L16).
 
-A clause without an activation may be a rival, too. The rival is then the clause's *stand-by*, which holds no spike. A
-*half* (``halves.py``) holds spikes for clauses that have no activation yet. With a tracer, halves hold no spikes, and
-`_judge_rival` judges all rivals.
+A clause without an activation may be a rival, too. A *half* (``halves.py``) may hold a spike for such a clause;
+`_judge_half` judges these rivals. Or the rival is the clause's *stand-by*, which holds no spike. With a tracer, halves
+hold no spikes, and `_judge_rival` judges all rivals.
 """
 
 from __future__ import annotations
@@ -276,7 +277,7 @@ class Consent:
         Return when the patience ends (seconds), or minus infinity if it has not started.
 
         Args:
-            rival: The rival, which may never become ready.
+            rival: The clause that is the rival.
             member: The rival's activation, or None for the rival's stand-by.
             group: The group.
             by: The activation that waits for the rival.
@@ -308,10 +309,11 @@ class Consent:
     def eliminate(self, rival: Activation) -> None:
         """End a rival whose patience has ended. The rival's rule gives the spikes up for good (L16)."""
         for spike in rival.firm_spikes():
+            # Unfold now: once the rule has given the spike up, an alternative of this rule cannot take it.
             for other in list(spike.holders) if self.state.alternatives else ():
                 queue = self.state.alternatives.get(other)
                 if queue is not None and any([clause.rule is rival.clause.rule for clause in queue[0]]):
-                    self.halves.sets.unfold(other)  # now: an alternative takes no spike that its rule gave up
+                    self.halves.sets.unfold(other)
             self.holdings.entries.refuse_for_good(spike, rival.clause.rule)
         self.holdings.end(rival, "eliminated")
 

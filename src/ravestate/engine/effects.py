@@ -1,4 +1,4 @@
-"""Effects: the orders and reports of an engine to the runtime around it. A closed union of records."""
+"""Effects: the orders and reports of an engine to the runtime around it. The union `Effect` lists all kinds."""
 
 from __future__ import annotations
 

@@ -24,7 +24,7 @@ from ravestate.errors import EngineError
 from ravestate.policy.policy import Policy
 
 DEFAULT_PATIENCE = 1.0
-"""The default patience of a rival under pressure, in seconds (law L16)."""
+"""How long (seconds) activations wait by default for a rival that may never become ready: its *patience* (law L16)."""
 
 SPARE: Final = 64
 """The maximum number of unused `Parts` that a policy keeps for its engines."""
@@ -91,7 +91,7 @@ class Engine:
     def effects(self) -> list[Effect]:
         """Return the effects to perform now. Call this again after performing them, until the list is empty.
 
-        First give the engine all events of the present instant, such as the ends of runs: the engine decides here.
+        First give the engine all events of this instant, such as the ends of runs. This call decides what starts.
         """
         parts = self._parts
         if parts is None:
@@ -118,14 +118,14 @@ class Engine:
         return parts
 
     def parts_at(self, now: float) -> Parts:
-        """Let time pass until `now` (seconds), and return the parts. Use them only if no journal records the events."""
+        """Let time pass until `now` (seconds), and return the parts. An event given to these reaches no journal."""
         parts = self._parts or self.parts
         if now != parts.state.now:
             parts.pass_time(now)
         return parts
 
     def rest(self) -> None:
-        """Return the parts to the policy if nothing is live and nothing is left to do. Call this after reading `state`."""
+        """Return the parts to the policy if nothing is live or left to do. Call this after reading `state`."""
         parts = self._parts
         if parts is not None and parts.state.at_rest:
             self._rest(parts)

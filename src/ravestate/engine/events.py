@@ -1,4 +1,4 @@
-"""Events: the inputs of an engine. A closed union of records; a journal keeps them for a replay."""
+"""Events: the inputs of an engine. The union `Event` lists all kinds. A journal keeps events for a replay."""
 
 from __future__ import annotations
 
@@ -46,7 +46,7 @@ class Store:
 
 @dataclass(slots=True)
 class Discard:
-    """A run, or code outside the rules (``run=None``), removes an item from a collection, if it is there."""
+    """A run, or code outside the rules (``run=None``), removes an item, if the collection has it."""
 
     slot: str
     key: str
@@ -73,7 +73,7 @@ class Wipe:
 
 @dataclass(slots=True)
 class Finish:
-    """The function of a run has ended (L18); `reason` and `exception` say why, if it resigned, retired or failed."""
+    """The function of a run has ended (L18); `reason` and `exception` say why a run resigned, retired or failed."""
 
     run: int
     kind: OutcomeKind

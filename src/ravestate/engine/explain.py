@@ -70,8 +70,8 @@ class Explanation:
         missing: A sentence for each of the rule's signals that did not occur in the trace: the rules that may raise the
             signal, and how each rule last ended. Empty without a trace.
         history: The rule's latest records in the trace, as text. Empty without a trace.
-        inputs: The rule's signals that are inputs. An input may come at any time, so only patience bounds a wait for
-            one.
+        inputs: The rule's signals that are inputs. An input may come at any time, so only patience limits the wait for
+            it.
     """
 
     rule: str

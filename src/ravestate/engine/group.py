@@ -55,7 +55,7 @@ class Group:
             (`State.dirty`).
         patience_ends: The rivals under pressure that have no activation yet (L16). Key: the number of the rival's
             clause; value: the time (seconds) at which the rival's patience ends, possibly in the past.
-        roster: The members of a large group by slot and by rule (``roster.py``); None until a question needs it.
+        roster: The members of a large group by slot and by rule (``roster.py``); None until a lookup needs it.
         answers: Key: the number of a slot; value: the rule that first finished with the slot, and the number of that
             rule's activation. The engine fills this table only while there is a tracer.
     """
@@ -109,14 +109,14 @@ class Group:
     def writers(self, slots: tuple[int, ...], causes: Causes) -> Iterable[Activation]:
         """Return the members that may write one of the slots, in the order in which they joined.
 
-        A small group has no roster, so it returns all members.
+        A small group has no roster. The result is then all members.
         """
         return self.members if self.count <= FEW else self._roster(causes).writers(slots)
 
     def causers(self, slots: tuple[int, ...], causes: Causes) -> Iterable[RulePlan]:
         """Return those of the members' rules that may trigger a writer of one of the slots.
 
-        A small group has no roster, so it returns the rules of all members.
+        A small group has no roster. The result is then the rules of all members.
         """
         if self.count <= FEW:
             return dict.fromkeys([member.clause.rule for member in self.members])

@@ -1,9 +1,9 @@
 """Halves: first spikes that wait, without an activation, for a second spike.
 
 A clause with two constraints, its *needs*, takes two spikes. A *half* (`Half`) is a set of needs for the same signal,
-all of which the engine can treat alike. A thousand rules `input & topic` would need a thousand activations for each
-input, although only a few of the topics occur. So the half holds the first spike as an *entry* in a table
-(``entries.py``), without activations.
+all of which the engine can treat alike. Suppose that a thousand rules have conditions such as `input & chess`, each
+with a topic of its own. They would need a thousand activations for each input, although few of the topics occur. So the
+half holds the first spike as an *entry* in a table (``entries.py``), without activations.
 
 The engine makes activations when the second spike, the *counterpart*, arrives. If many first spikes wait for it, the
 number of activations depends on the rule:

@@ -59,7 +59,10 @@ class Holdings:
         return activation
 
     def put_under_pressure(self, activation: Activation, group: Group, until: float) -> None:
-        """Give a new activation a patience in a group where its stand-by or entry was already under pressure (L16)."""
+        """Give a new activation a patience that ends in a group at `until` (seconds; L16).
+
+        The stand-by or the entry (``halves.py``) that the activation replaces was already under pressure there.
+        """
         activation.patience_ends = {group: until}
         if until > self.state.now:
             self.state.deadlines.add(until, PATIENCE, (group, activation))
@@ -171,7 +174,7 @@ class Holdings:
     def complete(self, activation: Activation, *, late: bool = False) -> None:
         """Make an activation ready and queue it, to ask for consent or, if it needs no consent, to start.
 
-        If the activation is a turn of a loop that must wait (L23), a second call, with `late`, queues it.
+        An activation that must wait as a turn of a loop (L23) is queued only by a second call, with `late`.
         """
         state = self.state
         if not late:
@@ -259,9 +262,9 @@ class Holdings:
     def _twins(self, activation: Activation) -> list[Activation]:
         """Return the other incomplete activations of the clause with the same spikes and the same patience.
 
-        Each further spike is offered to all of these activations, but only one of them can consume their spikes. While
-        that one waits or runs, a second one may still be a rival of other activations (L16). The others are superfluous.
-        If the clause never got its last spike, each new spike would add more of them (L23).
+        Each further spike is offered to all of these activations, but only one of them can consume the spikes. While
+        this one waits or runs, a second one may still be a rival of other activations (L16). More than two have no
+        use: if the clause never got its last spike, each new spike would add another activation (L23).
         """
         if not activation.clause.firm_bits:
             return []  # nothing is consumed, so all may run

@@ -4,13 +4,14 @@ Read first: docs/explanation/processing-model.md, which explains rivals, causal 
 
 A rival may still become ready if each of its constraints without a spike (its missing *needs*) may yet get one.
 
-The horizon of a group is the set of signals that rules of the group may yet cause. A rule may cause a signal if the rule
-runs, or if its constraints are met or may yet be met. So whether a signal may come depends on whether other signals may
-come. The horizon is the smallest set that satisfies this definition (a least fixed point over an and-or graph).
+The horizon of a group is the set of signals that rules of the group may yet cause. A rule may cause a signal if the
+rule runs, or if its constraints are met or may yet be met. So whether a signal may come depends on whether other
+signals may come. The horizon is the smallest set that satisfies this definition (a least fixed point over an and-or
+graph).
 
-The engine does not compute the whole set, because few signals matter at a time. It asks about one signal, and works
-backwards from it to live activations. A signal to which no live rule of the group leads (`Causes.ancestors`) needs no
-such search.
+The engine does not compute the whole set, because few signals matter at a time. It asks about one signal, and searches
+backwards from this signal to live activations. A signal to which no live rule of the group leads (`Causes.ancestors`)
+needs no such search.
 
 Each such search is a *derivation*. Its result is a *strength*:
 
@@ -22,7 +23,7 @@ Each such search is a *derivation*. Its result is a *strength*:
 
 A rule that would take one of the rival's own slots cannot help the rival: in one group a slot is written once (L19).
 The *asking activation* (the one that wants to run, and for which the engine judges the rival) cannot help either; nor
-can an activation that waits for it. These activations count as *inert*: doing nothing.
+can an activation that waits for the asking one. These activations count as *inert*: doing nothing.
 
 A chain of causes may be too long for recursion. So each step of a derivation is a generator, a `Step`, which yields the
 steps whose strengths it needs. `_solve` runs the steps, and keeps the waiting steps on a stack.
@@ -178,7 +179,7 @@ class Horizon:
         ]
 
     def _viable(self, clause: Clause, activation: Activation | None, group: Group, slots: SlotNumbers) -> Step:
-        """Derive how a clause may become ready, for `judge`. Rules that write one of `slots` cannot help."""
+        """Return the strength of a clause, for `judge`. Rules that write one of `slots` cannot help."""
         rule = clause.rule
         if rule.index in self.state.retired:
             return NO
@@ -280,7 +281,7 @@ class Horizon:
         return known[0]
 
     def _derive(self, place: Place, bound: int) -> Step:
-        """Derive the strength of a place. It is at least `bound`, which an earlier derivation has proven."""
+        """Return the strength of a place. The result is at least `bound`, which an earlier derivation has proven."""
         known, mark = self._known, len(self.roots)
         depth, first, before = self._depth, len(self._open), self._since
         self._depth += 1
@@ -381,7 +382,8 @@ class Horizon:
     def _helpless(self, rule: int, group: Group, *, near: bool) -> int:
         """Count the activations of a rule that cannot help `group` from outside.
 
-        These are inert ones, and members of `group` itself (counted only if `near`).
+        These are the inert activations and, if `near`, the members of `group`. `near` says that no detached effect lies
+        between the rule and the signal, so that members help from inside.
         """
         if self._inert is None:
             self._inert = {}

@@ -1,12 +1,12 @@
 """Leaders: when one activation is refused, the activations behind it need not ask in full.
 
-An activation is *behind* another if its clause has less effective utility. Suppose that a thousand activations are ready
-to write one slot, and the group refuses the best one. The group would refuse all others too, because the best one is a
-rival of each. So only the best one, the *leader*, asks in full (``consent.py``). The others *follow*: they wait for the
-leader, and examine no other rival.
+An activation is *behind* another if its clause has less effective utility. Suppose that a thousand activations are
+ready to write one slot, and the group refuses the best one. The group would refuse all others too, because the best one
+is a rival of each. So only the best one, the *leader*, asks in full (``consent.py``). The others *follow*: they wait
+for the leader, and examine no other rival.
 
 An activation cannot follow if the utility of a rival lies between the leader's and its own. The leader did not examine
-this rival. The activation must: the rival may need pressure, or its effects may make a further rival ready (law L16).
+this rival. The activation must examine it: the rival may need pressure, or may lead to a further rival (law L16).
 So the activation asks in full, and becomes the leader of the activations behind it.
 
 The leader's effects may also make a rival ready. An activation that asks in full considers this; a follower does not.

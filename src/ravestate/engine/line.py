@@ -1,4 +1,7 @@
-"""A line: a queue of ordered places. Most places join in one batch or return to the front, so searches are rare."""
+"""A line: a queue of activations in the order of their sort keys.
+
+Most activations join in one batch, or return to the front. So the heap of the queue is seldom needed.
+"""
 
 from __future__ import annotations
 
@@ -7,7 +10,7 @@ from typing import Any
 
 
 class Line:
-    """A queue of places, which are tuples; the least one is the first.
+    """A queue of *places*: tuples that end with an activation. The least place is the first.
 
     Attributes:
         line: The places that joined ahead of all others, in reverse order. This list is empty only if the queue is
@@ -32,7 +35,7 @@ class Line:
                 heapq.heappush(self._between, place)
 
     def take(self) -> Any:
-        """Remove the first place, and return it."""
+        """Remove the first place, and return it. The queue must not be empty."""
         line, between = self.line, self._between
         if between:
             if between[0] < line[-1]:

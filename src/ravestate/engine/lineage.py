@@ -25,7 +25,7 @@ class Loop:
 
 
 class Lineage(NamedTuple):
-    """The origin of a spike or a run: the numbers of the rules that led to it within an instant, and its loop."""
+    """The numbers of the rules that led to a spike or run within an instant, and the `Loop` to which it belongs."""
 
     rules: frozenset[int]
     loop: Loop

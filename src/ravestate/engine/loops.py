@@ -1,13 +1,13 @@
 """Endless loops (law L23): rules that trigger each other without time passing.
 
 An instant lasts until the engine has nothing left to do. After `MANY` runs in one instant, the engine notes for each
-new spike which rules led to the spike. A run is a further *turn* of a loop if its rule also led to one of its spikes.
-After `TURNS` turns of all loops together, the engine *defers* each further turn until nothing else is ready. When a
+new spike which rules led to the spike. A run is a further *turn* of a loop if an earlier run of the same rule led to
+it. After `TURNS` turns of all loops together, the engine *defers* each further turn until nothing else is ready. When a
 single loop has had `TURNS` turns, the engine names the loop's rules in an error.
 
 The turns of all loops count together, because a rule that triggers two runs of itself soon makes thousands of loops.
-The engine decides twice whether to defer an activation: when it becomes ready, and just before it starts. Many turns
-may have run in between.
+The engine decides twice whether to defer an activation: when the activation becomes ready, and just before it starts.
+Many turns may have run in between.
 """
 
 from __future__ import annotations
@@ -33,7 +33,9 @@ TURNS: Final = 500
 
 
 class Loops:
-    """The runs of the present instant, and the deferred turns of loops. `memory` keeps the rules that an error has named.
+    """The runs of the present instant, and the deferred turns of loops.
+
+    `memory` keeps the rules that an error has named for a loop.
 
     Attributes:
         runs: How many runs there have been in this instant.

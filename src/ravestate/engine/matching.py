@@ -86,8 +86,8 @@ class Matching:
     def _offer_again(self, group: Group) -> None:
         """Offer the spikes of a merged group again, oldest first.
 
-        Some needs of a clause may only hold spikes of one group (L12). Until now, this kept some of these spikes apart.
-        As at its birth, a spike is offered only to activations that are older than itself, oldest first.
+        Some needs of a clause may only hold spikes of one group (L12). Before the merge, this limit kept some of these
+        spikes apart. As at its birth, a spike is offered only to activations that are older than itself, oldest first.
         """
         state, holdings = self.state, self.holdings
         offers: list[tuple[int, int, int, Activation, Spike]] = []
@@ -226,7 +226,7 @@ class Matching:
     def on_look(self, looking: tuple[Need, Spike]) -> None:
         """Show a spike to a detached need for which it is old enough now (L19)."""
         need, spike = looking
-        need = self.state.policy.clause_plans[need.clause.index].needs[need.index]  # an added rule renews the plans
+        need = self.state.policy.clause_plans[need.clause.index].needs[need.index]  # adding a rule replaces all records
         if self.state.fits(need, spike):
             self._show(need, spike)
 

@@ -62,7 +62,7 @@ class Memory:
         self.watched: dict[str, int] = {}
         """Key: the name of a signal whose spikes are reported as effects; the value is always 1."""
         self.blamed = NO_NUMBERS
-        """The ids of the predicates whose failure was reported."""
+        """The `id` of each predicate whose exception was reported."""
         self.looped = NO_NUMBERS
         """The numbers of the rules that an error has named for an endless loop."""
         self.activations = 0

@@ -51,7 +51,11 @@ class Parts:
     # ------------------------------------------------------------------------------------ time and effects
 
     def pass_time(self, now: float) -> None:
-        """Let time pass until `now` (seconds), before an event. A time that has passed already changes nothing."""
+        """Let time pass until `now` (seconds), before an event. A time that has passed already changes nothing.
+
+        Raises:
+            EngineError: The time is NaN.
+        """
         state = self.state
         if now > state.now:
             self.holdings.waits.pass_time()
@@ -108,7 +112,7 @@ class Parts:
         return out
 
     # ------------------------------------------------------------------------------------ the commonest events
-    # The runner calls these, after `Engine.parts_at`, if nothing records the events.
+    # The runner calls these methods, after `Engine.parts_at`, if no journal records the events.
 
     def write(self, slot: str, value: Any, run: int | None, origin: Any = None) -> None:
         """Handle the event `Write` now; `run` is the number of the run, or None for code outside the rules."""

@@ -10,7 +10,7 @@ from typing import Any, Self
 
 
 def reason(*parts: str) -> Any:
-    """Return the value of a `Reason` member. From a bare tuple, type checkers do not learn that members are strings."""
+    """Return the value of a `Reason` member. Type checkers take a member made of a bare tuple for a tuple."""
     return parts
 
 

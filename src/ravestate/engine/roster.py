@@ -3,7 +3,7 @@
 A causal group is a set of spikes with one cause. Its members are the activations that hold these spikes. A thousand
 rules may hear one input. When the engine looks for the members that write one slot, there are only a few of them. A
 roster finds these without a search. A group of few members needs no roster. The engine makes the roster of a larger
-group at the first such lookup. From then on, `Group.join` and `Group.part` keep it up to date.
+group at the first such lookup. From then on, `Group.join` and `Group.part` keep the roster up to date.
 """
 
 from __future__ import annotations

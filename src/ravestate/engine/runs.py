@@ -234,7 +234,10 @@ class Runs:
 
 
 def _origin(run: Activation) -> Any:
-    """Return the origin of a run's youngest spike that has one. Spikes that the run only looks at count last (L19)."""
+    """Return the origin of a run's youngest spike that has one.
+
+    A spike of a detached need counts only if no other spike has an origin (L19).
+    """
     known = [spike for spike in run.stands_on if spike.origin is not None]
     looked = [spike for spike in run.spikes if spike is not None and spike.origin is not None]
     return max(known or looked, key=_birth).origin

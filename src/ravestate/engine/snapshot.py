@@ -81,7 +81,7 @@ def snapshot(engine: Engine) -> dict[str, Any]:
 
 
 def plain(value: Any) -> Any:
-    """Return a value as data that JSON can carry; a value of any other type becomes its ``repr``."""
+    """Return a value as data that JSON can carry: a set becomes a list, and any unknown type its ``repr``."""
     if value is None or isinstance(value, (bool, int, float, str)):
         return value
     if isinstance(value, Mapping):

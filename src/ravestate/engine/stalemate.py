@@ -49,7 +49,7 @@ def stalemate(consent: Consent, refused: Iterable[Activation], known: Stuck | No
             if not moved:
                 break
             stuck -= {one for one, _ in moved}
-            for _, refusal in moved:  # these wait for further activations, which may in turn wait for them
+            for _, refusal in moved:  # a moved activation waits for others, which may in turn wait for it
                 reached += [root for roots in refusal.sure for root in roots if root not in seen]
         if not any([_hangs(root) for root in reached]):
             return stuck

@@ -2,7 +2,7 @@
 
 The effective utility of a clause is its utility x weight x recovery. After a run that fired, recovery climbs from 0 to
 1 over the rule's cooldown. If both utilities are 0, weight x recovery decides. If two clauses are equal, the one
-declared first is ahead.
+declared first is ahead. A *crossing* is a moment at which recovery changes the order of two clauses.
 """
 
 from __future__ import annotations
@@ -19,7 +19,7 @@ DIGITS = 9
 """The time of a crossing (seconds) is rounded to this many decimal places, so that events of one moment coincide."""
 
 INSTANT = 0.5e-9
-"""Moments that differ by less than this (seconds) are the same: half a unit of the last decimal place."""
+"""Moments that differ by less than this (seconds) are the same: half a unit of the last of these decimal places."""
 
 
 class Standing:
@@ -45,7 +45,7 @@ class Standing:
         return clause.base * self.recovery(clause)[0] if clause.rule.cooldown else clause.base
 
     def lead(self, one: Clause, other: Clause) -> float:
-        """Return by how many nats `one` is ahead of `other` now; 0 if only weights or the order of declaration decide."""
+        """Return by how many nats `one` is ahead of `other` now; 0 if only weights or declaration order decide."""
         worth = one.utility * one.rule.weight * self.recovery(one)[0]
         return max(0.0, lead(worth, other.utility * other.rule.weight * self.recovery(other)[0]))
 
@@ -82,7 +82,8 @@ class Standing:
     def crossing(self, one: Clause, other: Clause) -> float:
         """Return the time (seconds) at which recovery next changes the order of two clauses; `inf` for never.
 
-        The time is computed from the last run. So all activations that wait for it get exactly the same time.
+        The result depends on the times of the last runs, not on the present time. So all activations that wait for the
+        crossing get exactly the same time.
         """
         (far, fast), (their_far, their_fast) = self.recovery(one), self.recovery(other)
         closing = one.base * fast - other.base * their_fast

@@ -156,7 +156,7 @@ class State(Memory):
         """Hope → the waiting activations that have it. A hope is something outside an activation's groups that may lift
         the activation's refusal (``activation.py``)."""
         self.hope_counts: dict[tuple[int, int], int] = NOTHING
-        """Hope → its greatest count in the refusals of these activations (`Horizon.hopes`)."""
+        """Hope → its greatest count in the refusals of the activations that have it (`Horizon.hopes`)."""
         self.stirred: dict[tuple[int, int], None] = NOTHING
         """The hopes that have changed. The activations that have them ask again (`Waits.wake`)."""
         self.alternatives: dict[Activation, tuple[tuple[Clause, ...], int, int]] = NOTHING
@@ -173,7 +173,7 @@ class State(Memory):
         self.out: list[Effect] = []
         """The effects that the runtime has not taken yet."""
         self.acts = False
-        """Whether one of these effects starts or cancels a run."""
+        """Whether an effect in `out` starts or cancels a run."""
         self.errors: tuple[tuple[RuleFailure, Lineage | None, Any], ...] = ()
         """The failures that ``core:error`` has not reported yet, each with its lineage (the rules that led
         to it), and the origin of the failed run."""
@@ -283,7 +283,7 @@ class State(Memory):
         return held is not None and not (spike.parted and need.clause.index in spike.parted)
 
     def entry_number(self, need: Need, spike: Spike) -> int:
-        """Return the number that the activation of `need` gets if the need's half makes activations of a spike."""
+        """Return the number that the activation of the need's clause gets if the half makes activations of a spike."""
         half = need.half
         assert half is not None
         held = self.entries(half, spike)
@@ -317,22 +317,24 @@ class State(Memory):
     # ------------------------------------------------------------------------------------ slots and predicates
 
     def is_open(self, clause: Clause) -> bool:
-        """Return whether the clause's slot predicates are true. A predicate that raises counts as false, and is
-        reported."""
+        """Return whether the clause's slot predicates are true.
+
+        A predicate that raises an exception counts as false, and is reported.
+        """
         for slot, guard in clause.guards:
             if not self.test(guard.predicate, self.read(slot.index), clause):
                 return False
         return True
 
     def opens(self, slot: SlotPlan, guard: Holds) -> bool:
-        """Return whether a slot predicate is true. A predicate that raises counts as false, without a report."""
+        """Return whether a slot predicate is true. An exception in the predicate counts as false, without a report."""
         try:
             return bool(guard.predicate(self.read(slot.index)))
         except Exception:  # the designer's predicate may raise anything
             return False
 
     def test(self, predicate: Any, value: Any, clause: Clause) -> bool:
-        """Return the result of a clause's predicate. A predicate that raises counts as false, and is reported once."""
+        """Return the result of a clause's predicate. An exception counts as false, and is reported once."""
         try:
             return bool(predicate(value))
         except Exception as exception:  # a predicate is the designer's code, which may raise anything
@@ -357,7 +359,7 @@ class State(Memory):
         return True
 
     def report_faults(self) -> None:
-        """Report the predicates that have raised, in declaration order (L5), which is not the order of their calls."""
+        """Report the predicates that raised an exception, in declaration order (L5), not in order of calls."""
         faults, self.faults = self.faults, NOTHING
         for clause, predicate, exception in sorted(faults.values(), key=_declared):
             self.blamed |= {id(predicate)}

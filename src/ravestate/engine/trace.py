@@ -1,7 +1,8 @@
-"""The trace (law L25): a closed union of records for the debugger, the recorder and the tests.
+"""The trace (law L25): records for the debugger, the recorder and the tests. The union `Record` lists all kinds.
 
-The engine makes a record only while it has a tracer. The records identify a run by the number of its activation. Events,
-effects and ``ctx.run`` have the run's own number, which is the same without a tracer. `Started` has both.
+The engine makes a record only while it has a tracer. The records identify a run by the number of its activation.
+Events, effects and ``ctx.run`` have the run's own number, which does not depend on the tracer. `Started` has both
+numbers.
 
 Times are in seconds. The number ``clause`` is the clause's place within its rule.
 """
@@ -79,7 +80,7 @@ class GaveUp:
     signal: str
     reason: str
     by: str = ""  # the rule that consumed the spike, or resigned; empty if there is none
-    run: int = 0  # the number of the activation that ran; 0 if there is none, or if it is unknown
+    run: int = 0  # the activation of the rule `by`; 0 if there is none, or if it is unknown
 
 
 @dataclass(frozen=True, slots=True)
@@ -97,14 +98,15 @@ class Passed:
     signal: str
     reason: str
     by: str = ""  # the rule that had consumed the spike's cause; empty if unknown
-    run: int = 0  # the number of the activation that ran; 0 if unknown
+    run: int = 0  # the activation of the rule `by`; 0 if unknown
 
 
 @dataclass(frozen=True, slots=True)
 class Waits:
     """A ready activation waits for the rules ``for_``: rivals, or runs that hold a slot (L15).
 
-    The wait ends at ``until`` at the latest, because the patience of the rivals ends then; None without such a limit.
+    The wait ends at ``until`` at the latest, because the patience of the rivals ends then. Without such a limit,
+    ``until`` is None.
     """
 
     time: float

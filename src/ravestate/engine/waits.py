@@ -52,7 +52,7 @@ class Waits:
                 self.tell_followers()
 
     def tell_followers(self) -> None:
-        """Record in the trace which rules the followers wait for, after a change of their leaders' waits."""
+        """Record which rules the followers (``leaders.py``) wait for, after a change of their leaders' waits."""
         for other in self.state.waiting:
             if other.refusal is not None and other.refusal.leader is not None:
                 self._tell(other, other.refusal)

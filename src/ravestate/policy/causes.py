@@ -57,8 +57,8 @@ class Causes:
     def roots(self, signal: int) -> int:
         """Return the roots of a signal's pathways, as bits. Roots have numbers of their own.
 
-        A root is a signal without causes, or a cycle without causes from outside. The pathways of two signals have a
-        signal in common if and only if the two signals share a root.
+        A root is a signal without causes, or a cycle without causes outside the cycle. The pathways of two signals have
+        a signal in common if and only if the two signals share a root.
         """
         return self._roots[self.components.of[signal]]
 
@@ -230,7 +230,7 @@ class Causes:
 
     @property
     def contested(self) -> frozenset[int]:
-        """The slots that a search along a chain of effects must note, because a group allows one write of a slot (L19).
+        """The slots whose writes a search along a chain of effects must note: a group allows one write of a slot (L19).
 
         A slot that several rules write is contested. If only one rule writes a slot, a chain that writes the slot twice
         visits this rule twice. Within one group, the chain can leave out the part between the two visits, and still

@@ -17,7 +17,7 @@ class Conflict:
         first, second: The rules' names, in declaration order.
         slots: The names of the slots that both rules write.
         causes: The names of the signals that lie on pathways of both rules.
-        winner: The name of the rule that goes first if both are ready and recovered.
+        winner: The name of the rule that goes first if both are ready, and neither is in its cooldown.
         margin: The winner's lead in utility x weight (nats). If both utilities are 0, the lead is 0, although the
             weights may decide which rule wins.
         tie: Whether only the order of declaration decides, because neither rule is ahead.

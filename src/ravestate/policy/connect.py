@@ -13,8 +13,10 @@ from ravestate.policy.model import Clause, Half, Need, RulePlan, SignalPlan, Slo
 
 
 def connect(signals: Sequence[SignalPlan], slots: Iterable[SlotPlan], rules: Iterable[RulePlan]) -> None:
-    """Set the listeners and watchers of each signal; mark the signals that are inputs (law L8), and the slots with
-    guards."""
+    """Set the fields of signals and slots that depend on all rules.
+
+    Signals: `listeners`, `watchers`, `retain` and `input` (law L8). Slots: `guarded` and `heard`.
+    """
     raised = {signal for rule in rules for signal in rule.raises}
     listeners: list[list[Need]] = [[] for _ in signals]
     watchers: list[list[Need]] = [[] for _ in signals]
@@ -144,8 +146,7 @@ def _best_writers(causes: Causes) -> dict[tuple[int, int], Clause]:
 
 
 def _is_sole(clause: Clause, best: dict[tuple[int, int], Clause], causes: Causes) -> bool:
-    """Return whether only detached rules may raise the signals of a plain clause, and no better clause competes with
-    it."""
+    """Return whether a plain clause (`_is_plain`) is sole: see `Half.sole`."""
     slots = clause.rule.slots
     return (
         bool(slots)

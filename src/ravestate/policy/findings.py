@@ -116,7 +116,7 @@ def _unreachable(policy: Plans) -> Iterator[Finding]:
             yield Finding(
                 "unreachable",
                 rule.name,
-                f"rule {rule.name} runs only if code outside the rules raises {names}, because no input leads to it; "
+                f"rule {rule.name} runs only if code outside the rules raises {names}: no input leads to the rule; "
                 "if such code exists, declare the signal or its slot with input=True",
             )
         elif rule.slots and all(_starves(policy, clause, known) for clause in rule.clauses):
@@ -167,7 +167,11 @@ def _never_wins(policy: Plans) -> Iterator[Finding]:
 
 
 def _winners(policy: Plans) -> dict[tuple[int, int], list[Clause]]:
-    """Return the clauses that wait only for signals, by slot and by the clause's rarest signal; the best come first."""
+    """Return the clauses without predicates and without detached needs, by slot and by rarest signal.
+
+    The rarest signal of a clause is the one with the fewest listeners. In each list, the best clause comes first.
+    Clauses of a rule with a cooldown are left out, unless they wait only for ``core:startup``.
+    """
     found: dict[tuple[int, int], list[Clause]] = {}
     for rule in policy.rule_plans:
         for clause in rule.clauses:

@@ -1,8 +1,8 @@
 """The least pathway of a clause (law L9): the pathway with the least information.
 
 An *alternative* of a signal is a set of signals that together may cause it. A pathway is a set that holds an
-alternative of each of its signals. Its *cost* is its information. A set of signals is an integer with one bit for each
-signal; `Completion` gives each signal its *place*, the number of this bit.
+alternative of each of its signals. The *cost* of a set is its information. A set of signals is an integer with one bit
+for each signal; `Completion` gives each signal its *place*, the number of this bit.
 
 The search begins with the clause's own signals. Among the signals that lack an alternative, each step takes the signal
 with the highest bit, and tries each alternative of this signal. If two sets agree in all signals that further steps can
@@ -48,7 +48,7 @@ class Least:
         self._masks: dict[int, list[int]] = {}
         """Open signal → its alternatives as sets."""
         self._known: dict[int, tuple[int, int]] = {}
-        """Set of signals that further steps may reach → the cost of its completion, and the signals that this adds."""
+        """Set of signals that further steps may reach → the cost of its completion, and the signals added."""
         self._follow()
         for members in completion.components:
             self._settle([place for place in members if not completion.bare[place]])

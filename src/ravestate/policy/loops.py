@@ -91,7 +91,7 @@ def _wanted(clause: Clause) -> list[Need]:
 def _raised(policy: Plans, rule: RulePlan) -> list[int]:
     """Return the numbers of the signals with which a rule may immediately start the loop's next run.
 
-    The signals of flags are left out: a flag that has its value already raises none.
+    The signals of flags are left out: writing the present value of a flag raises no signal.
     """
     changes = [policy.slot_plans[s].signals[0].index for s in rule.slots if not policy.slot_plans[s].is_flag]
     return [*rule.emits, *changes]

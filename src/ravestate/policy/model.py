@@ -58,8 +58,7 @@ class SignalPlan:
     watchers: tuple[Need, ...] = ()
     """The needs for this signal in `until` conditions (L21)."""
     retain: float = -1.0
-    """How many seconds after its birth detached needs can still see a spike that nothing holds. If the signal has no
-    such needs, the number is negative."""
+    """The age (seconds) up to which detached needs can see a spike that nothing holds; negative without such needs."""
 
     def __post_init__(self) -> None:
         self.name = self.signal.name
@@ -222,8 +221,9 @@ class Half:
         slotset: The numbers of the slots that each of the rules writes.
         busy: Whether a held spike counts for ``core:activity``.
         places: Number of a rule → the place of its need in `needs`.
-        sole: Whether only detached rules may raise the signals of the half's clause, and no better clause writes its
-            slots for the same cause. Such a half has a single need.
+        sole: Whether the half has benches (``engine/benches.py``). Such a half has a single need. The signals of its
+            clause come only from outside or from detached rules, and no better clause writes its slots for the same
+            cause.
     """
 
     needs: tuple[Need, ...]

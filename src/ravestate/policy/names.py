@@ -15,7 +15,7 @@ from ravestate.policy.model import SignalPlan, SlotPlan
 
 
 class Names:
-    """The numbered signals and slots that modules declare, in declaration order. `faults` has their mistakes."""
+    """The numbered signals and slots that modules declare, in declaration order. Their mistakes go to `faults`."""
 
     def __init__(self, modules: Sequence[Module], faults: list[str]) -> None:
         self.faults = faults

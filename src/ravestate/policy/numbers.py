@@ -30,7 +30,10 @@ class Numbers:
     def number(
         self, rule: Rule[Any, Any], number: Number, what: str, valid: Callable[[float], bool], wanted: str
     ) -> float:
-        """Return the value of a rule's argument `what`. If the value is not `valid`, add a fault and return 1."""
+        """Return the value of a rule's argument `what`. If the value is not `valid`, add a fault and return 1.
+
+        `wanted` describes a valid value, for the fault's message.
+        """
         where = f"rule {rule.name} ({rule.origin}): {what}"
         source = repr(number)
         if isinstance(number, SettingRef):

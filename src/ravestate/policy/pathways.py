@@ -4,9 +4,9 @@ An *alternative* of a signal is a set of signals that together may cause it. To 
 of its alternatives, and one pathway of each signal in the alternative. The union of these pathways and the signal
 itself is the pathway.
 
-The search walks from a signal to its causes, and notes its *way*: the signals that it has passed. It ends at a signal
-that is already on the way, because the causes form a cycle there. So the pathways of a signal depend on the way to the
-signal.
+The search walks from a signal to its causes, and notes its *way*: the signals that it has passed. The way ends at a
+signal that it has passed before, because the causes form a cycle there. So the pathways of a signal depend on the way
+to the signal.
 
 Only explanations need the pathways one by one. Utilities need less: `Completion` counts the rules that a signal leads
 to, and `Least` finds the least pathway.

@@ -85,7 +85,9 @@ class Plans:
 
 
 def _check_reachable(causes: Causes, faults: list[str]) -> None:
-    """Add a fault for each rule that no input can start, because it waits for rules that cannot start either.
+    """Add a fault for each rule that no input can start.
+
+    Each clause of such a rule waits for rules that cannot start either.
 
     A rule that lacks only the signal of a slot, or a detached effect, gets a finding instead. Code outside the rules
     may write slots, and detached effects make loops on purpose.

@@ -42,8 +42,10 @@ class Policy(Plans):
         """Return the utility of a rule in nats: the greatest utility of its clauses, without weight and cooldown (L9).
 
         The result is exact in almost all cases. It may be slightly too high if dozens of signals on a pathway each have
-        several causes, which in turn share causes (``policy/least.py``). Raise a `DeclarationError` for an unknown
-        rule.
+        several causes, which in turn share causes (``policy/least.py``).
+
+        Raises:
+            DeclarationError: The policy has no such rule.
 
         Example:
             >>> import ravestate as rs

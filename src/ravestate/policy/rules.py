@@ -18,8 +18,8 @@ from ravestate.policy.numbers import Numbers
 FLAGS = (f"{activity.name}:", f"{pressure.name}:")
 """The signals of the built-in flags, `core:activity` and `core:pressure`, have names that begin like this.
 
-An activation that waits for such a signal changes neither flag. If it could, an activation that hears `activity.false`
-would set `activity`, and so lose its spike. Then `activity` would be false again, and so on, all in one instant.
+An activation that hears such a signal changes neither flag. Otherwise, an activation with a spike of `activity.false`
+would make `activity` true, which withdraws that spike. Then `activity` would be false again, and so on without end.
 """
 
 
