@@ -382,7 +382,7 @@ export type TraceRecord =
 /**
  * A ready activation waits for the rules `for_`: rivals, or runs that hold a slot (L15).
  *
- * The wait ends at `until` at the latest, because the patience of the rivals ends then; None without such a limit.
+ * The wait ends at `until` at the latest, because the patience of the rivals ends then. Without such a limit, `until` is None.
  */
 export interface Waits {
   kind: "waits";
