@@ -253,8 +253,8 @@ class Refusal:
     """The reasons for which an activation must wait. If `names` is empty, the activation has consent.
 
     Attributes:
-        names: Key: the name of a rule that the activation waits for; value: the best of that rule's clauses that are
-            rivals.
+        names: Key: the name of a rule that the activation waits for; value: the best of the rule's clauses that it
+            waits for. Such a clause is a rival, or its run has taken a slot.
         blockers: The live activations on whose progress the refusal depends. `explain` does not show them.
         sure: An entry for each rival whose readiness depends only on work in progress: the activations that do this
             work.
@@ -283,7 +283,7 @@ class Refusal:
         self.told: tuple[str, ...] = ()
 
     def name(self, rival: Clause) -> None:
-        """Record that the activation waits for a rival."""
+        """Record that the activation waits for a clause: a rival, or the clause of a run that has taken a slot."""
         known = self.names.get(rival.rule.name)
         if known is None or known.base < rival.base:
             self.names[rival.rule.name] = rival

@@ -199,9 +199,9 @@ class Consent:
     def _press_half(self, refusal: Refusal, half: Half, spike: Spike, clause: Clause, *, commit: bool) -> bool:
         """Put the clauses of a half that are ahead of `clause` under pressure. Return whether a clause was eliminated.
 
-        For each spike and half, `State.patience_ends` has pairs: how many of the half's best clauses have a patience,
-        and when it ends. Each count includes the clauses of earlier pairs. A time applies to the clauses that its pair
-        adds.
+        For each spike and half, `State.patience_ends` has pairs of a count and a time. The count says how many of the
+        half's best clauses are under pressure, including the clauses of earlier pairs. The time is the end of the
+        patience of the clauses that the pair adds.
 
         If a clause still has patience, add it to `refusal`, which `ask` returns.
         """

@@ -47,6 +47,7 @@ class Group:
     """The slots that are taken in a group, and the activations that hold its spikes or wait in it.
 
     Attributes:
+        id: The group's number. Groups are numbered in the order in which they begin.
         taken: Key: the number of a slot that is taken in the group; value: the runs that hold the slot, or None if a
             run has finished with it.
         entries: The group's spikes that a half holds (``halves.py``), and the counterparts of benches (``benches.py``).

@@ -157,6 +157,7 @@ class _Absent:
 
 
 ABSENT: Any = _Absent()
+"""The mark for "no item": it stands in the place of an item that a collection does not have."""
 
 
 def equal(old: Any, new: Any) -> bool:

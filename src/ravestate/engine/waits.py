@@ -7,8 +7,8 @@ Each waiting activation keeps the reasons for its wait, a `Refusal`. It asks aga
   (``activation.py``)
 
 It also asks again at its recheck time, and when its rule or a rival begins a cooldown. All waiting activations ask
-again when the rules change, or when a slot with predicates changes. `Waits.stir_rule` finds the hopes that a change of
-an activation concerns.
+again when the rules change, or when a slot with predicates changes. When an activation changes, `Waits.stir_rule` finds
+the hopes that depend on the activation's rule.
 """
 
 from __future__ import annotations

@@ -83,6 +83,7 @@ class Causes:
         return found
 
     def _find_parts(self) -> list[int]:
+        """Return, for each root, the first root of its part (by union-find)."""
         above = list(range(max([roots.bit_length() for roots in self._roots], default=0)))
 
         def first(root: int) -> int:

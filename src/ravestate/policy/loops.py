@@ -3,7 +3,7 @@
 In a loop, each rule has a clause whose signals come from rules of the loop, and at least one rule or constraint is
 detached. Without detachment, the causal group ends the loop (L19). A clause with a ``min_age`` or a predicate is not
 part of a loop here, because it may end the loop. A rule that takes time is not part of a loop either. A rule takes time
-if it awaits something. A plain function takes time if it uses a value that may block: one of any type but `QUICK`.
+if it awaits something. A plain function takes time if it uses a value that may block: one whose type is not in `QUICK`.
 """
 
 from __future__ import annotations

@@ -5,9 +5,9 @@ An act is a read, a write, an emit or the use of a payload. This file checks an 
 closure hold the slot or signal. All other acts are checked when the rule runs (law L3), e.g. an act on a name that the
 function itself binds.
 
-Guarded code, too, is checked only when the rule runs. Code is guarded if it is in a branch on a constant, on
-``hasattr``, or on a variable of an enclosing function. For other values of this variable, the enclosing function may
-make rules with other declarations. The body of a ``try`` that expects a missing name is guarded as well.
+Guarded code, too, is checked only when the rule runs. Code is guarded if it is in a branch whose test uses a boolean
+constant, ``hasattr`` or a variable of an enclosing function. For other values of this variable, the enclosing function
+may make rules with other declarations. The body of a ``try`` that expects a missing name is guarded as well.
 """
 
 from __future__ import annotations
