@@ -56,7 +56,7 @@ class Settings(pydantic.BaseModel, metaclass=_SettingsMeta):
     Values come from four sources, the strongest first:
 
     - code: ``rs.Context(settings={...})`` and ``--set``
-    - the environment: ``RAVESTATE_<MODULE>_<FIELD>``, as JSON unless the field is a text
+    - the environment: ``RAVESTATE_<MODULE>_<FIELD>``, as plain text or as JSON (see `value_of`)
     - the agent file
     - the defaults
 
