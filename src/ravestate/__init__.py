@@ -1,7 +1,8 @@
 """Ravestate: interactive agents as Signal-Rule-Slot automata.
 
 Declare modules of rules in plain Python. Run them as an agent, talk to the agent, or test it in virtual time.
-Importing this package loads neither third-party packages nor asyncio. Names that need them load on first use.
+Importing this package loads neither third-party packages nor asyncio. A name that needs these, such as ``rs.Context``,
+loads them on first use.
 """
 
 from __future__ import annotations
@@ -56,6 +57,7 @@ _LATER = {
     "compile": ("ravestate.policy.compile", "compile_policy"),
     "run": ("ravestate.runtime.run", "run"),
 }
+"""Name → the Python module that defines it, and its name there. The module loads when the name is first used."""
 
 
 def __getattr__(name: str) -> Any:

@@ -10,7 +10,7 @@ def script() -> int:
 
         return script()
     except KeyboardInterrupt:
-        return 130
+        return 130  # the exit code of a command that Ctrl-C has ended
 
 
 if __name__ == "__main__":

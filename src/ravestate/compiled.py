@@ -1,8 +1,9 @@
-"""The compiled build. ``tools/native.py`` compiles the modules that every event passes through.
+"""The compiled build. ``tools/native.py`` compiles the Python files whose code handles every event.
 
-The compiled modules are in ``native``, which has a folder for each interpreter and platform. `prefer` makes a package
-find the modules in that folder before the sources. The file ``stamp`` in the folder has a checksum of the sources. The
-sources run as pure Python if the checksum differs, or if the environment variable ``RAVESTATE_PURE`` is not empty.
+The compiled files are in ``native``, which has a folder for each interpreter and platform. `prefer` makes a package
+import the compiled files in that folder instead of their sources. The file ``stamp`` in the folder has the checksum
+that the sources had when they were compiled. If the sources have changed since, or if the environment variable
+``RAVESTATE_PURE`` is not empty, the sources run as pure Python.
 """
 
 from __future__ import annotations
@@ -18,7 +19,7 @@ SOURCES = os.path.dirname(__file__)
 PLACE = os.path.join(SOURCES, "native", EXTENSION_SUFFIXES[0].split(".")[1])
 """The folder of the compiled modules for this interpreter, e.g. ``native/cpython-311-x86_64-linux-gnu``."""
 STAMP = os.path.join(PLACE, "stamp")
-"""A file with a checksum of the compiled source files, and then their names, one on each line."""
+"""A text file: the checksum of the sources that were compiled, and then their names, one on each line."""
 
 COMPILED = "compiled"
 PURE = "pure Python"
@@ -47,11 +48,11 @@ def build() -> str:
         return PURE
     if not fresh:
         return STALE
-    sys.modules["ravestate"].__path__.append(PLACE)  # the compiled modules share one library
+    sys.modules["ravestate"].__path__.append(PLACE)  # the compiled files share one library in this folder
     return COMPILED
 
 
 def prefer(path: MutableSequence[str]) -> None:
-    """Put the compiled modules of a package before its sources; `path` is the package's ``__path__``."""
+    """Put the compiled files of a package before its sources; `path` is the package's ``__path__``."""
     if build() == COMPILED:
         path.insert(0, os.path.join(PLACE, os.path.basename(path[0])))

@@ -4,7 +4,7 @@
 RavestateError
 ├── DeclarationError(ValueError)      a designer's mistake, found before running
 ├── DeclarationErrors(ExceptionGroup) all such mistakes together
-├── UsageError                        no such module, file or setting; commands end with exit code 2
+├── UsageError                        a user's mistake, e.g. an unknown module; commands end with exit code 2
 ├── RuleError(RuntimeError)           a rule failed, or broke its declaration
 │   ├── UndeclaredError(LookupError)  a rule touched a slot or a signal that it does not declare
 │   ├── RuleTimeout(TimeoutError)     a run took longer than the rule's ``timeout``
@@ -13,7 +13,8 @@ RavestateError
 └── PlatformError(RuntimeError)       a failure of a device, a server or a file, or a missing package
 ```
 
-Messages give the refused value, the place in the code, the nearest valid name, and the line to write instead.
+Where possible, a message gives the refused value, the place in the code, the nearest valid name, and the code to write
+instead.
 """
 
 from __future__ import annotations
@@ -50,7 +51,7 @@ def _count(faults: Sequence[DeclarationError]) -> str:
 
 
 class UsageError(RavestateError):
-    """A command names something that does not exist: a module, a file or a setting. Commands end with exit code 2."""
+    """The user made a mistake, e.g. in a command's arguments or in an agent file. Commands end with exit code 2."""
 
 
 class RuleError(RavestateError, RuntimeError):
@@ -75,7 +76,7 @@ class RunEnded(RuleError):
 class EngineError(RavestateError, RuntimeError):
     """A call does not fit the present state of a context or a simulation, or the engine itself has failed.
 
-    In virtual time, rules that trigger each other without end raise this error, too.
+    A simulation also raises this error if rules trigger each other without end in one instant.
     """
 
 
@@ -108,7 +109,7 @@ def nearest(name: str, names: Iterable[str]) -> str:
 
 
 ALIKE = 0.6
-"""A hint names another name only if the two are at least this similar: the share of letters that both have in the same
+"""The minimum similarity of a name that `nearest` suggests: the share of letters that both names have in the same
 order."""
 
 

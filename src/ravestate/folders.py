@@ -33,14 +33,14 @@ def replace_file(path: Path, content: bytes, *, mode: int = 0o666) -> None:
     Args:
         path: The file.
         content: The new content.
-        mode: The rights of the new file, before the user's mask takes some away.
+        mode: The rights of the new file; the process's umask takes some of them away.
 
     Raises:
         OSError: The file cannot be written.
     """
     new = path.with_name(f"{path.name}.new")
     try:
-        new.unlink(missing_ok=True)  # a process that died may have left one, perhaps with other rights
+        new.unlink(missing_ok=True)  # a process that died may have left this file, perhaps with other rights
         with os.fdopen(os.open(new, os.O_WRONLY | os.O_CREAT | os.O_EXCL, mode), "wb") as file:
             file.write(content)
         new.replace(path)

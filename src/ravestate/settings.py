@@ -1,7 +1,7 @@
 """Typed settings of modules, as pydantic models. A declaration may refer to a model's fields.
 
 This file is not in ``declare``, because it needs pydantic, and ``declare`` uses no third-party code. It loads when
-``rs.Settings`` is first used.
+``rs.Settings`` or ``rs.Context`` is first used.
 """
 
 from __future__ import annotations
@@ -28,7 +28,7 @@ VALIDATORS: dict[str, Callable[[Any], Any]] = {
     "plain": pydantic.PlainValidator,
     "wrap": pydantic.WrapValidator,
 }
-"""The annotation for each mode of ``pydantic.field_validator``."""
+"""Mode of a ``pydantic.field_validator`` → the annotation with the same effect."""
 
 NameOrPath = Annotated[str, PurePath]
 """The type of a setting that takes a name or a path, such as a microphone's name or a sound file."""
@@ -38,7 +38,7 @@ class _SettingsMeta(type(pydantic.BaseModel)):
     """A metaclass that makes ``MySettings.field`` a reference to the setting, for ages and weights in rules."""
 
     def __getattr__(cls, item: str) -> Any:
-        # Pydantic itself reads attributes of the class before the class is complete.
+        # Before the class is complete, pydantic itself reads its attributes, and must not get references.
         if cls.__dict__.get("__pydantic_complete__") and item in cls.__pydantic_fields__:  # type: ignore[attr-defined]  # pydantic's own
             return SettingRef(item, cls)
         try:
@@ -56,7 +56,7 @@ class Settings(pydantic.BaseModel, metaclass=_SettingsMeta):
     Values come from four sources, the strongest first:
 
     - code: ``rs.Context(settings={...})`` and ``--set``
-    - the environment: ``RAVESTATE_<MODULE>_<FIELD>``, as JSON unless the field is a text
+    - the environment: ``RAVESTATE_<MODULE>_<FIELD>``, as plain text or as JSON (see `value_of`)
     - the agent file
     - the defaults
 
@@ -73,7 +73,7 @@ class Settings(pydantic.BaseModel, metaclass=_SettingsMeta):
         5.0
     """
 
-    # Sources and messages use the names of fields; a field's alias is a second name.
+    # Files, variables and messages use the names of fields; a field's alias is a second name for it.
     model_config = pydantic.ConfigDict(
         extra="forbid", frozen=True, validate_default=True, populate_by_name=True, loc_by_alias=False
     )
@@ -87,8 +87,8 @@ def load_settings(
     """Return the settings of each module, by the module's name.
 
     Values in `given` override values in the environment, and these override the defaults. For each module, `given` has
-    values of fields, or an instance of the module's settings class. Without `environment`, the variables of the
-    process count.
+    values of fields, or an instance of the module's settings class. `environment` has environment variables; by
+    default, those of the process.
 
     Raises:
         DeclarationErrors: Modules or fields are unknown, or values have wrong types. The group has one error for each
@@ -124,7 +124,7 @@ def load_settings(
             continue
         named = {
             str(key): value for key, value in values.items()
-        }  # YAML reads some names, such as `on`, as other values
+        }  # YAML reads some names, such as `on`, as values that are not texts
         try:
             found[name] = model(**{**_from_environment(name, model, variables), **named})
         except pydantic.ValidationError as error:
@@ -157,8 +157,8 @@ def value_of(text: str, model: type[pydantic.BaseModel], field: str, parse: Call
     - `parse` raises a ValueError.
     - The field takes the text, but not the result. So ``12`` is a text for ``str | None`` and for a path, but a number
       for ``str | int``.
-    - The field takes the text, the result is a text as well, and `text` does not begin with a quotation mark. The result
-      may lack a part of the text: YAML removes ``#5`` from ``Room #5``.
+    - The field takes the text, the result is a text as well, and `text` does not begin with a quotation mark. Such a
+      result may lack a part of `text`: YAML removes ``#5`` from ``Room #5``.
     """
     if cast("Any", model.model_fields[field].annotation) in TEXT:
         return text
@@ -213,7 +213,7 @@ def _located(value: Any, kinds: Collection[Any], folder: PurePath) -> Any:
 
 
 def _kinds(annotation: Any) -> Iterator[Any]:
-    """Yield the types in an annotation, apart from those of the keys of a mapping."""
+    """Yield the types in an annotation. Leave out the type of a mapping's keys."""
     arguments, origin = get_args(annotation), get_origin(annotation)
     if isinstance(origin, type) and issubclass(origin, Mapping):
         arguments = arguments[1:]
@@ -226,7 +226,7 @@ def _kinds(annotation: Any) -> Iterator[Any]:
 def _takes(model: type[pydantic.BaseModel], field: str, value: Any) -> bool:
     """Return whether the field takes the value. Validators of the whole model do not run: other values may be missing.
 
-    If a validator of the field fails with an error of its own, the type alone decides.
+    If a validator of the field fails with an exception that is no validation error, the type alone decides.
     """
     validators: list[Any] = [
         VALIDATORS[validator.info.mode](validator.func)

@@ -1,8 +1,9 @@
-"""Read YAML that users write, with limits on depth and size, and without repeated keys. Errors name the file and, where possible, the line.
+"""Read YAML that users write. Refuse repeated keys, and texts that are too deep or too large.
 
-A few lines of aliases can stand for billions of values ("billion laughs"), and deep nesting exhausts the
-stack. The loaders here refuse both immediately. If a mapping has a key twice, YAML itself would lose the first value
-without a word. Keys such as ``1`` and ``0x1`` are equal for `load_yaml`; for `compose_yaml`, they are two texts.
+Errors name the file and, where possible, the line. A few lines of aliases can stand for billions of values ("billion
+laughs"), and deep nesting exhausts the stack. The loaders here refuse both immediately. If a mapping has a key twice,
+PyYAML would silently drop the first value. Keys such as ``1`` and ``0x1`` are equal for `load_yaml`; for
+`compose_yaml`, they are two texts.
 """
 
 from __future__ import annotations
@@ -26,7 +27,7 @@ DIGITS = 300
 LARGEST = 100_000
 """The maximum number of values in a YAML text. Each alias counts as all the values that it stands for."""
 
-MERGE = "tag:yaml.org,2002:merge"
+MERGE = "tag:yaml.org,2002:merge"  # the tag of the key ``<<``, which copies the items of another mapping
 
 RESPELT = tuple(f"tag:yaml.org,2002:{kind}" for kind in ("bool", "int", "float", "null", "timestamp"))
 """The tags of the values that have several spellings, such as ``1`` and ``0x1``."""
@@ -108,7 +109,7 @@ class _Bounded(Composer):
 
 class _Values(SafeConstructor):
     def construct_number(self, node: yaml.ScalarNode) -> Any:
-        """Return the number in a node. Refuse a long number: in base 60 (``59:59:...``), it takes minutes to read."""
+        """Return the number in a node. Refuse a long number: one in base 60 (``59:59:...``) takes minutes to read."""
         if len(node.value) > DIGITS:
             raise yaml.constructor.ConstructorError(
                 None, None, f"a number of more than {DIGITS} digits", node.start_mark

@@ -125,7 +125,7 @@ class RavestateAgent(Agent):
             return
         match event:
             case ConversationItemAddedEvent(item=llm.ChatMessage(role="assistant") as message):
-                self._conversation.heard(message.text_content or "")  # only the words before an interruption
+                self._conversation.heard(message.text_content or "")  # after an interruption, only the words before it
             case UserStateChangedEvent(new_state="speaking"):
                 self._conversation.notice_speech()
             case UserInputTranscribedEvent(is_final=False):

@@ -38,8 +38,8 @@ class RavestateProcessor(FrameProcessor):
     """A processor that answers with a Ravestate agent instead of a language model.
 
     It takes the user's words from a user aggregator's `LLMContextFrame`. Without an aggregator, it takes them from each
-    `TranscriptionFrame`. It pushes each utterance of the agent, answers and unasked ones alike, as the frames of a
-    language model's response.
+    `TranscriptionFrame`. It pushes each utterance of the agent, an answer or not, as the frames of a language model's
+    response.
 
     Args:
         agent: The agent; see `AnyAgent`.
@@ -62,7 +62,7 @@ class RavestateProcessor(FrameProcessor):
         self._conversation = Conversation(contexts_of(agent)(), self._utterances.put_nowait, "pipecat")
         self._tasks: list[asyncio.Task[None]] = []  # they run until `cleanup`
         self._taken: object = None  # the last message of the user that the agent has heard
-        self._guessed = False  # whether the user's turn may continue after the last words
+        self._guessed = False  # whether Pipecat has only guessed that the user's turn is over
 
     async def process_frame(self, frame: Frame, direction: FrameDirection) -> None:
         """Tell the agent about a frame, and pass the frame on unless it is meant for a language model."""
@@ -77,7 +77,7 @@ class RavestateProcessor(FrameProcessor):
                 if not frame.speculation:
                     conversation.hear(self._new_words(frame.context))
                 return
-            case LLMContextUserTurnFrame() if self._guessed:  # the framework guessed right: the turn has ended
+            case LLMContextUserTurnFrame() if self._guessed:  # Pipecat guessed right: the turn has ended
                 self._guessed = False
                 conversation.hear(frame.text)
             case EagerEndOfTurnCancelFrame():

@@ -102,7 +102,7 @@ class Conversation:
 
     Args:
         context: The agent's context for this conversation.
-        speak: A function that receives each utterance as it begins, unless an `answer` takes it.
+        speak: A function that receives each utterance as it begins. While `answer` runs, it yields them instead.
         platform: The platform's name, for the user's key in ``interloc.users``.
     """
 

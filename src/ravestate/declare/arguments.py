@@ -1,4 +1,4 @@
-"""Checks of the arguments of a declaration. Every error message ends with the code to write instead."""
+"""Checks of the arguments of a declaration. The error messages say what to write instead."""
 
 from __future__ import annotations
 
@@ -24,7 +24,7 @@ R = TypeVar("R")
 def keywords(*options: str) -> Callable[[Callable[P, R]], Callable[P, R]]:
     """Return a decorator that makes a method refuse an unknown keyword; the message names the nearest known keyword.
 
-    The method accepts `options`, too, besides the keywords in its signature.
+    `options` are keywords that the method accepts in addition to those in its signature.
     """
 
     def decorate(method: Callable[P, R]) -> Callable[P, R]:
@@ -64,9 +64,10 @@ def check_options(keep: object = "all", limit: object = 1, *, what: str) -> None
 
 
 def check_function(function: object, title: str, *, named: bool, where: str, decorator: str) -> None:
-    """Refuse a value that cannot be a rule's function. `named` says whether the declaration has a ``name=``.
+    """Refuse a value that cannot be a rule's function.
 
-    The messages use `where`, the place of the declaration, and `decorator`, the decorator as the user types it.
+    `title` is the rule's name, and `named` says whether it comes from ``name=``. The messages use `where`, the place of
+    the declaration, and `decorator`, the decorator as the user types it.
     """
     if isinstance(function, Rule):
         raise DeclarationError(
@@ -116,7 +117,7 @@ def number(value: object, what: str, where: str) -> Number:
 
 
 def several(values: Any, kind: type[T], what: str, where: str, home: str) -> tuple[T, ...]:
-    """Return one or more slots or signals as a tuple without duplicates.
+    """Return one or more slots or signals as a tuple without duplicates; refuse values of another `kind`.
 
     `what`, `where` and `home` are as for `condition`.
     """

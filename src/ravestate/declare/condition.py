@@ -1,7 +1,7 @@
 """Conditions: boolean combinations of constraints on signals and of predicates on slots (laws L3, L4).
 
-A condition is a value. ``&`` and ``|`` build trees; ``policy/clauses.py`` brings them into disjunctive normal
-form.
+A condition is a value. ``&`` and ``|`` build trees; ``policy/clauses.py`` brings these trees into disjunctive
+normal form.
 """
 
 from __future__ import annotations
@@ -63,7 +63,7 @@ class Constraint(Condition):
     predicates: tuple[Predicate, ...] = ()
 
     def min_age(self, seconds: Number) -> Constraint:
-        """Accept a spike only when it is at least `seconds` old; `seconds` is a number or a setting."""
+        """Let the rule start only when the spike is at least `seconds` old; `seconds` is a number or a setting."""
         return replace(self, min_age_=_age(seconds, "min_age"))
 
     def max_age(self, seconds: Number | None) -> Constraint:
@@ -135,9 +135,11 @@ class AnyOf(Compound):
 
 
 def checked_predicate(predicate: object, what: str, of: str) -> Predicate:
-    """Return `predicate` if it is a plain function; refuse any other value. The message uses `what` and `of`.
+    """Return `predicate` if it is a plain function; refuse any other value.
 
-    Calling an asynchronous function or a generator only creates an object, and that object always counts as true.
+    Calling an asynchronous function or a generator only creates an object, and that object always counts as true. The
+    message uses `what`, the method that got the predicate, and `of`, the predicate's argument: ``payload`` or
+    ``value``.
     """
     if not callable(predicate):
         raise DeclarationError(f"{what}({predicate!r}): expected a function of the {of}")

@@ -24,10 +24,10 @@ shutdown = core.signal("shutdown", input=True)
 """Raised once, when a context is about to end. The context waits a few seconds for rules that react to this signal."""
 
 error = core.signal("error", payload=RuleFailure, input=True)
-"""Raised when a rule fails (L18)."""
+"""Raised when a rule (L18) or a predicate of its condition fails."""
 
 activity = core.flag("activity", input=True, keep="latest")
-"""True while some activation of a rule without `background` holds a spike or runs."""
+"""True while some activation of a foreground rule holds a spike or runs."""
 
 pressure = core.flag("pressure", input=True, keep="latest")
 """True while some ready activation has to wait for consent."""

@@ -34,10 +34,10 @@ class Module:
 
     Args:
         name: Letters, digits, ``_`` and ``-``. The names of the module's signals, slots and rules begin with it.
-        requires: Modules whose signals and slots this module uses: `Module` values, or Python modules that contain one
-            (``from ravestate.modules import rawio``).
+        requires: Modules whose signals and slots this module uses: `Module` values, or Python modules that contain a
+            `Module` (``from ravestate.modules import rawio``).
         settings: A subclass of ``rs.Settings`` with the values that a user may configure.
-        serve: An async function, for platforms that serve many users. `server` declares it later.
+        serve: An async function that serves an agent to many users. The decorator `server` can declare it later.
 
     Raises:
         DeclarationError: The name is invalid, a value in `requires` is no module, or `settings` is no settings class.
@@ -184,8 +184,8 @@ class Module:
             weight: A factor above 0 that multiplies the utility (L9).
             cooldown: When the rule has fired, its utility takes this many seconds to recover from 0 (L9). A run that
                 resigned does not count.
-            patience: Other rules wait at most this many seconds for an input, or another cause's spike, that this rule
-                still lacks (L16). The default is the context's patience.
+            patience: If this rule still lacks an input, or a spike of another causal group, other rules wait at
+                most this many seconds for it (L16). The default is the context's patience.
             until: A condition that interrupts a run when new spikes meet it (L21).
             timeout: The maximum duration of a run in seconds, after which it fails (L18); no limit by default.
             detached: Whether the rule's effects begin new causal groups (L19).
@@ -243,7 +243,7 @@ class Module:
 
 
 def as_module(value: object) -> Module:
-    """Return the `Module` that a value denotes: the value itself, or the ``module`` of a Python module.
+    """Return the value itself if it is a `Module`; or a Python module's attribute ``module``, or its only `Module`.
 
     Raises:
         DeclarationError: The value is of another type, or the Python module holds no `Module` or more than one.

@@ -1,4 +1,4 @@
-"""References to settings in declarations; a context looks up the value of each setting when it starts.
+"""References to settings in declarations; when a context is made, it looks up the value of each setting.
 
 The `Settings` model is in ``ravestate/settings.py``: it needs pydantic, and the pure packages use no third-party code.
 """

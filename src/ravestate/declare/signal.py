@@ -18,7 +18,7 @@ DEFAULT_LIMIT = 100_000  # the default of a signal's `limit`: its maximum number
 
 
 class SignalOptions(TypedDict, total=False):
-    """The options of a signal; a collection gives them to each of its signals.
+    """The options of a signal. A slot gives its options to each of its signals.
 
     Attributes:
         input: Whether code outside the rules may raise the signal even if a rule raises it too (L8). A signal that no

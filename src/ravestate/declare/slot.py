@@ -114,7 +114,10 @@ class Slot(Generic[T]):
 
 
 def checkable(kind: Any) -> Any:
-    """Return a type that `isinstance` can check in place of `kind`, or None. A float slot also takes integers."""
+    """Return the type to check with `isinstance`, or None if `isinstance` cannot check `kind`.
+
+    A float slot also takes integers.
+    """
     if kind is float:
         kind = int | float
     try:

@@ -1,7 +1,8 @@
-"""Signal-Rule-Slot diagrams in the paper's notation, as SVG, DOT or Mermaid, without third-party packages.
+"""Signal-Rule-Slot diagrams as SVG, DOT or Mermaid, without third-party packages.
 
-`build` makes a diagram (`graph`) from rules, `fold` folds modules, `layout` places the nodes and lines, and `svg`, `dot`
-and `mermaid` write text.
+The notation is that of the paper by Birkner et al., which README.md cites. `build` makes a diagram (`graph`) from
+rules, and `fold` draws whole modules as one node each. `layout` places the nodes and lines. `svg`, `dot` and `mermaid`
+write text.
 """
 
 from __future__ import annotations

@@ -2,8 +2,8 @@
 
 The heuristic of Eades, Lin and Smyth (1993) runs within each strongly connected component. It orders the vertices from
 both ends at the same time. Then it reverses the edges that point backwards in this order. There are two refinements.
-Weak edges, whose weight is below `STRONG`, are reversed before strong edges. The vertex's number breaks ties, so that
-the result depends only on the input.
+The heuristic prefers to reverse weak edges, whose weight is below `STRONG`. At a tie, it takes the vertex with the
+lowest number, so that the result depends only on the input.
 """
 
 from __future__ import annotations

@@ -1,8 +1,9 @@
 """Building a diagram from declared rules.
 
-The diagram shows a slot or a signal only if a rule uses it. It shows a signal of a slot only if a rule waits for this
-signal. Conditions are in disjunctive normal form, because a rule fires by one clause at a time (law L5). Several
-constraints of a clause meet in a conjunction, and several clauses meet in a disjunction.
+The diagram shows a slot or a signal only if a rule uses it. It shows a signal of a slot only if a rule's condition
+names this signal. Conditions are in disjunctive normal form, because each run of a rule is for one clause (law L5). If
+a clause has several constraints, their lines meet in a conjunction node. If a rule has several clauses, their lines
+meet in a disjunction node.
 """
 
 from __future__ import annotations

@@ -31,7 +31,8 @@ def assign_coordinates(graph: LayeredGraph, room: float | None = None) -> list[f
         for v, gap in zip(layer, [*gaps[-1], 0.0], strict=True):
             middle[v] = y
             y += gap
-    before: list[list[tuple[int, float, float]]] = [[] for _ in middle]  # vertex → (neighbour, port's offset, weight)
+    # vertex → (neighbour, offset between the ports, weight)
+    before: list[list[tuple[int, float, float]]] = [[] for _ in middle]
     after: list[list[tuple[int, float, float]]] = [[] for _ in middle]
     for low, high in graph.segments:
         p, q = graph.ports[low], graph.ports[high]
@@ -61,7 +62,7 @@ def assign_coordinates(graph: LayeredGraph, room: float | None = None) -> list[f
 
 
 def _isotonic(wishes: Sequence[float], weights: Sequence[float], gaps: Sequence[float], half: float) -> list[float]:
-    """Return the places from -half to half that keep the gaps and are nearest to the wishes (by weighted squares)."""
+    """Return places from -half to half that keep the gaps and are nearest to `wishes` (weighted least squares)."""
     pools: list[tuple[float, float, int]] = []  # (mean, weight, number of members)
     offsets: list[float] = []
     offset = 0.0

@@ -21,8 +21,8 @@ def minimise_crossings(graph: LayeredGraph, *, centred: bool = False) -> None:
     """Reorder the layers of `graph` in place.
 
     A vertex's neighbours are initially in order of creation. If `centred`, the dummies among them (vertices at which a
-    long edge passes a layer) are in the middle. A hyperedge through many layers then runs straight, with branches to
-    both sides.
+    long edge passes a layer) are in the middle. Long edges that share their dummies then run straight through many
+    layers, with branches to both sides.
     """
     before, after = graph.neighbours()
     if centred:

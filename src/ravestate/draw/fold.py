@@ -20,7 +20,8 @@ _STRONGEST_FIRST: tuple[EdgeKind, ...] = (
 def fold(diagram: Diagram, unfolded: Collection[str] = ()) -> Diagram:
     """Return the diagram with one node for each module that is not `unfolded`.
 
-    Edges inside a folded module disappear. Several edges with the same ends become one arrow of the strongest kind.
+    Edges inside a folded module disappear. Several edges from one node to another become one arrow of the strongest
+    kind, if one of the nodes is a folded module.
     """
     home = _modules(diagram)
     rules = Counter(home[node.id] for node in diagram.nodes if node.kind == "rule")

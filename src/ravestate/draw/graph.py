@@ -101,7 +101,7 @@ def describe(node: Node) -> str:
 
 
 def used(diagram: Diagram) -> tuple[list[NodeKind], list[EdgeKind]]:
-    """Return the kinds of nodes and the kinds of edges that a diagram uses, in the order of the paper's table."""
+    """Return the kinds of nodes and the kinds of edges that a diagram uses, in the order of `NODES` and `EDGES`."""
     nodes = {node.kind for node in diagram.nodes}
     edges = {edge.kind for edge in diagram.edges}
     return [kind for kind in NODES if kind in nodes], [kind for kind in EDGES if kind in edges]

@@ -2,7 +2,8 @@
 
 Vertices are the nodes of the diagram, the labels of its edges, and dummies where a long edge passes a layer. A line
 begins and ends at a port. Edges of one kind share one port on each side of a node. Long edges that begin (or end) at
-one port share their dummies, too. So a hub shows one hyperedge with branches instead of a bundle of parallel lines.
+one port share their dummies, too. So a node with many edges has one line with branches (a hyperedge) instead of many
+parallel lines.
 """
 
 from __future__ import annotations
@@ -96,7 +97,10 @@ class LayeredGraph:
 
 
 def proper_layering(ranks: Sequence[int], sizes: Sequence[tuple[float, float]], links: Sequence[Link]) -> LayeredGraph:
-    """Return the graph, with a dummy wherever a link passes a layer. A layer's vertices are in order of creation."""
+    """Return the graph, with a dummy wherever a link passes a layer. A layer's vertices are in order of creation.
+
+    `ranks` has the layer of each node; `sizes` has its width and height (pixels).
+    """
     graph = LayeredGraph()
     builder = _Builder(graph)
     for rank, (width, height) in zip(ranks, sizes, strict=True):
@@ -108,6 +112,7 @@ def proper_layering(ranks: Sequence[int], sizes: Sequence[tuple[float, float]], 
         if link.label is not None or link.kind not in _SOLID:
             # A label needs a piece of line that belongs only to its edge, near the arrow's head. And dashed lines may
             # overlap only at their start, because the dashes of two lines match only there.
+            # So such links share their dummies at the start of the arrow.
             share_low = not link.is_reversed
         builder.link(link, ranks[link.low], ranks[link.high], share_low)
     graph.order = [[] for _ in range(max(graph.layer, default=-1) + 1)]
@@ -138,7 +143,7 @@ class _Builder:
         self.graph = graph
         self.ports: dict[tuple[object, ...], int] = {}
         self.dummies: dict[tuple[object, ...], int] = {}
-        self.known: dict[tuple[int, int], int] = {}
+        self.known: dict[tuple[int, int], int] = {}  # pair of ports → the number of its segment
 
     def vertex(self, layer: int, kind: VertexKind, width: float, height: float) -> int:
         graph = self.graph

@@ -1,4 +1,4 @@
-"""The legend below the picture: the notation that the picture uses, in the order of the paper's table."""
+"""The legend below the picture: a sample of each kind of node and edge that the picture has."""
 
 from __future__ import annotations
 
@@ -31,7 +31,10 @@ class Legend:
 
 
 def legend(diagram: Diagram, x: float, y: float, room: float, prefix: str) -> Legend:
-    """Return the legend of a diagram at (x, y), in rows of at most `room` pixels; ids begin with `prefix`."""
+    """Return the legend of a diagram, in rows of at most `room` pixels.
+
+    Its upper left corner is at (x, y). `prefix` is that of the arrowheads (`heads`).
+    """
     nodes, edges = used(diagram)
     plain: list[NodeKind] = [kind for kind in nodes if kind not in JUNCTIONS]
     junctions: list[NodeKind] = [kind for kind in nodes if kind in JUNCTIONS]

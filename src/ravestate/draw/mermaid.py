@@ -74,7 +74,7 @@ def _label(node: Node) -> str:
 def _words(edge: Edge) -> str:
     words = _WORDS.get(edge.kind, "")
     if edge.kind == "condition_detached" and edge.label.startswith("until"):
-        words = ""  # an interruption holds no spikes, so the word "detached" would mislead
+        words = ""  # an `until` condition holds no spikes, so the word "detached" would mislead
     return ", ".join(word for word in (words, edge.label) if word)
 
 

@@ -1,4 +1,7 @@
-"""Edge routing: the lines between vertices, as lists of points. The y coordinate of each vertex is known."""
+"""Edge routing: the lines between vertices, as lists of points. The y coordinate of each vertex is known.
+
+A line that is not straight turns on a track: one of several vertical lines between two layers (`tracks`).
+"""
 
 from __future__ import annotations
 

@@ -3,7 +3,7 @@
 An arc is tight if it has its minimum length. A spanning tree of tight arcs fixes all ranks (layers). If one arc of the
 tree is removed, the tree falls into two sides. The arc's cut value is the sum of (weight out - weight in) over the
 vertices on the side of the arc's tail. An arc with a negative cut value should be longer, so it leaves the tree. The
-tightest arc that crosses between the two sides in the other direction takes its place.
+tightest arc that crosses between the two sides in the other direction takes its place. This is one *exchange*.
 """
 
 from __future__ import annotations

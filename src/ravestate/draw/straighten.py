@@ -16,7 +16,10 @@ _LEVEL = 0.01  # pixels: a line with a smaller step counts as straight
 
 
 class Straightener:
-    """Moves the vertices of a graph so that lines become straight: it changes `middle`, each vertex's middle (y)."""
+    """Moves the vertices of a graph so that lines become straight.
+
+    It changes `middle`, the y coordinate of each vertex's middle (pixels).
+    """
 
     def __init__(self, graph: LayeredGraph, middle: list[float]) -> None:
         self.graph = graph

@@ -62,7 +62,7 @@ EDGE_STYLES: dict[EdgeKind, EdgeStyle] = {
 
 
 def stylesheet() -> str:
-    """Return the CSS of a standalone SVG. Its rules apply only inside elements of the class ``srs``."""
+    """Return the CSS of a standalone SVG. Each selector begins with the class ``srs`` or ``srs-paper``."""
     rules: list[tuple[str, str, Paint, str]] = [
         (".srs-paper", "fill", PAPER, ""),
         (".srs text", "fill", TEXT, f"font-family:{_FONTS};font-size:13px"),

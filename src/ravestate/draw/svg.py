@@ -81,7 +81,7 @@ def _label(edge: Edge, box: Box, nodes: dict[str, Node]) -> str:
 
 
 def _sentence(edge: Edge, nodes: dict[str, Node]) -> str:
-    """Return an edge as a sentence in the terms of the paper's table: subject, verb, object."""
+    """Return an edge as a sentence in the terms of the notation: subject, verb, object."""
     source, target = nodes[edge.source], nodes[edge.target]
     if edge.kind == "reads":
         words = f"{_name(target)} reads {_name(source)}"

@@ -21,6 +21,7 @@ _CLASSES: tuple[tuple[float, str], ...] = (
     (1.00, "%Wm"),
     (1.10, "@"),
 )
+"""Widths in ems, each with the characters of this width."""
 _EMS: dict[str, float] = {character: ems for ems, characters in _CLASSES for character in characters}
 _OTHER = 0.85  # the width of any other character, in ems
 _WIDE = 1.05  # the width of an East Asian wide character, in ems
@@ -49,7 +50,7 @@ def shorten(text: str, size: float, limit: float) -> str:
 
 
 def clean(text: str) -> str:
-    """Replace each control character, line break, noncharacter and direction mark by U+FFFD."""
+    """Replace each control character, line break, surrogate, noncharacter and direction control by U+FFFD."""
     return "".join("\ufffd" if _unprintable(character) else character for character in text)
 
 

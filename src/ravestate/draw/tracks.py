@@ -24,7 +24,10 @@ _TOUCHING = 4 * STRONG  # the cost of overlapping stubs, far above the cost of a
 
 @dataclass(slots=True)
 class Tracks:
-    """The number of tracks, and the track of each segment; None for a segment that is straight or, rarely, slanted."""
+    """The number of tracks, and the track of each segment; None for a segment without a turn.
+
+    Such a segment is straight. Rarely, it is slanted, because no order of the nets keeps their stubs apart.
+    """
 
     count: int
     of: list[int | None]
@@ -32,6 +35,8 @@ class Tracks:
 
 @dataclass(slots=True)
 class _Net:
+    """A net: its segments, the y coordinate of each left and each right port, and its least and greatest y (pixels)."""
+
     segments: list[int] = field(default_factory=list[int])
     left: dict[int, float] = field(default_factory=dict[int, float])
     right: dict[int, float] = field(default_factory=dict[int, float])
@@ -46,9 +51,9 @@ def tracks(segments: Sequence[Segment]) -> Tracks:
     if not nets:
         return found
     joined = {(p, q) for p, q, _, _ in segments}
-    wishes: list[tuple[int, int, int]] = []
+    wishes: list[tuple[int, int, int]] = []  # (a net, a net that should be to its right, the weight of this wish)
     by_top = sorted(range(len(nets)), key=lambda i: (nets[i].top, i))
-    overlaps: list[list[int]] = [[] for _ in nets]
+    overlaps: list[list[int]] = [[] for _ in nets]  # net → the nets that cannot be on the same track
     for at, i in enumerate(by_top):
         for j in by_top[at + 1 :]:
             if nets[j].top > nets[i].bottom + _APART:
@@ -110,7 +115,7 @@ def _nets(segments: Sequence[Segment]) -> list[_Net]:
 def _offending(a: _Net, b: _Net, segments: Sequence[Segment], joined: set[tuple[int, int]]) -> set[int]:
     """Return the segments to slant if `a` cannot be left of `b`.
 
-    If two stubs overlap, slant the segments of the stub that has fewer of them.
+    If two stubs overlap, slant the segments of the stub that has fewer segments.
     """
     found: set[int] = set()
     for p, y in a.left.items():

@@ -40,7 +40,7 @@ class AgentSpec:
         modules: The modules, in order.
         settings: Name of a module → key → value. Only settings from files and options are here.
         seed: The seed of random choices; `None` for a new seed in each run.
-        patience: The patience of rules that declare none, in seconds: see `Module.rule` (law L16).
+        patience: The patience (seconds) of rules that declare no patience: see `Module.rule` (law L16).
         faults: A message for each mistake so far.
     """
 
@@ -50,7 +50,7 @@ class AgentSpec:
     patience: float = 1.0
     faults: list[str] = field(default_factory=list[str])
     _read: list[tuple[str, str, Any, Path]] = field(default_factory=list[tuple[str, str, Any, Path]])
-    """The settings from files, in order: module, key, value, and the file. `load` takes them."""
+    """The settings from files, in order: module, key, value, and the file. `load` moves them to `settings`."""
 
     @classmethod
     def from_file(cls, path: Path) -> AgentSpec:
@@ -97,10 +97,12 @@ class AgentSpec:
         return [(name, path.parent) for name in cast("list[str]", modules)]
 
     def load(self, names: Iterable[tuple[str, Path]]) -> None:
-        """Load modules. Then take over the settings from files; the modules say how to read them.
+        """Load modules. Then move the settings from files to `settings`, unless an environment variable overrides them.
+
+        The loaded modules say which settings are paths: a relative path is relative to the folder of its file.
 
         Args:
-            names: The names of modules, each with the folder to which a relative path refers.
+            names: The names of modules. If a name is a relative path, it is relative to the folder given with it.
 
         Raises:
             UsageError: A module cannot be loaded. If there are `faults` already, the message becomes one of them.

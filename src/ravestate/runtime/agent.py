@@ -25,6 +25,6 @@ class Agent:
         self._options: dict[str, Any] = {**options, "settings": self.settings}
 
     def context(self, **options: Any) -> Context:
-        """Return a new context of this agent, which can start only once. `options` override the agent's options."""
+        """Return a new context of this agent. A context can start only once. `options` override the agent's options."""
         merged: Any = self._options | options
         return Context(self.policy, **merged)

@@ -15,8 +15,8 @@ except ImportError:  # Windows
     resource = None
 
 BLOCKING: Final = 0.1
-"""If one step of an async rule takes longer than this (seconds), a warning names the rule: nothing else runs
-meanwhile."""
+"""If one step of an async rule takes longer than this (seconds), a warning names the rule, because nothing
+else on the loop runs meanwhile."""
 
 FRESH: Final = 0.01  # steps that begin within this many seconds share one reading of the thread's CPU time
 
@@ -25,9 +25,10 @@ ASLEEP = 0.05
 waits for the interpreter's lock: it then sleeps again and again, for about 5 ms each time."""
 
 OTHERS = 0.5
-"""A step does not count as sleeping if other threads of the process computed for more than this share of its sleeps. The
-step may then have waited for them. For instance, a new thread starts only when it gets the interpreter's lock, and its
-caller sleeps until then. A library that loads a model holds that lock for 0.2 s at a time."""
+"""A step does not count as sleeping if other threads of the process computed for more than this share of the time that
+it slept. The step may then have waited for these threads. For instance, a new thread starts only when it gets the
+interpreter's lock, and its caller sleeps until then. A library that loads a model holds that lock for 0.2 s at a
+time."""
 
 log = logging.getLogger("ravestate")
 
@@ -35,11 +36,12 @@ log = logging.getLogger("ravestate")
 class StepTimer:
     """Measures the steps of async rules, and warns of steps that block the loop. Use it on the loop's thread only.
 
-    A step blocks the loop if it computes, or sleeps, for longer than `BLOCKING`. The time for which the thread waits
-    for a processor or for other threads does not count, so a busy machine causes no warning. The operating system
-    counts how often the thread slept voluntarily, and how often the scheduler preempted it. If the scheduler preempted
-    the thread during a step, the timer ignores the sleeps of this step. Windows and macOS do not count this; there, the
-    timer ignores all sleeps.
+    A step is the code that a rule runs without a break: up to the next ``await`` that suspends it, or to its end. A
+    step blocks the loop if it computes, or sleeps, for longer than `BLOCKING`. The time for which the thread waits for
+    a processor or for other threads does not count, so a busy machine causes no warning. The operating system counts
+    how often the thread slept voluntarily, and how often the scheduler preempted it. If the scheduler preempted the
+    thread during a step, the timer ignores the sleeps of this step. Windows and macOS have no such counts for a thread;
+    there, the timer ignores all sleeps.
 
     Reading the CPU time costs as much as a short rule. One reading serves all steps that begin within `FRESH` seconds,
     so a reported time may be too long by that much.

@@ -1,6 +1,6 @@
 """A context's clock. It starts at zero and follows the loop's time. It can be halted, set forward and started again.
 
-Another clock, such as that of a simulation, can drive it.
+Another clock, such as the clock of a robot simulator, can drive it.
 """
 
 from __future__ import annotations
@@ -19,6 +19,7 @@ class Clock:
         self._origin = loop.time()
         self._halted: float | None = None
         self._driven: float | None = None
+        # future of a call of `sleep` → the time at which the call ends (seconds), and its timer
         self._sleepers: dict[asyncio.Future[None], tuple[float, asyncio.TimerHandle | None]] = {}
 
     def now(self) -> float:
@@ -102,7 +103,7 @@ class Clock:
             self._origin = self._loop.time() - present
             self._halted = None
             if self._driven is not None:
-                self.drive(max(self._driven, present))  # `set` may have set the clock beyond its driver
+                self.drive(max(self._driven, present))  # `set` may have set this clock beyond the driving clock
                 return
             for sleeper, (until, _) in self._sleepers.items():
                 timer = self._loop.call_at(self.on_loop(until), _wake, sleeper)

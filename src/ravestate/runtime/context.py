@@ -43,7 +43,8 @@ class Context:
         patience: The seconds for which other rules wait for a rule that lacks an input. Then that rule gives up its
             spikes (law L16). A rule may set its own patience.
         trace: True to keep records of all events, for ``trace`` and ``explain``; or a function to call with each record.
-        journal: A function, e.g. a `Journal`, to call with each event and each `Taken` mark, and its time (seconds).
+        journal: A function, e.g. a `Journal`, to call with each event and its time (seconds). Each time the context
+            takes the engine's effects, it calls the function with a `Taken` instead of an event.
 
     Raises:
         DeclarationErrors: The modules or the settings have faults.
@@ -218,7 +219,7 @@ class Context:
             slot: The slot.
             value: The new value.
             origin: Any object, for example the message that brought the value. Every rule that the write leads to gets
-                it as ``ctx.origin``. So a platform knows which message an output answers.
+                this object as ``ctx.origin``. So a platform knows which message an output answers.
 
         Raises:
             UndeclaredError: The policy does not have the slot.

@@ -1,9 +1,9 @@
 """Run the first step of a coroutine without a task of its own. If the coroutine suspends, give it a task.
 
-Making a task and switching to it takes longer than running most rules. That is why the first step needs no task. During
-this step, a spare task counts as the current task. So `asyncio.current_task`, `asyncio.timeout` and context variables
-work as usual. If the coroutine ends in its first step, the spare task remains free for the next coroutine. If the
-coroutine suspends, the spare task adopts it.
+Making a task and switching to it takes longer than running most rules. So a coroutine gets a task of its own only if it
+suspends. During its first step, a spare task counts as the current task. This way, `asyncio.current_task`,
+`asyncio.timeout` and context variables work as usual. If the coroutine ends in its first step, the spare task remains
+free for the next coroutine. If the coroutine suspends, the spare task adopts it.
 """
 
 from __future__ import annotations
@@ -64,7 +64,7 @@ class EagerTask:
         self._clean = variables
         self._renew()
         waiting: Any = host(self)
-        waiting.send(None)  # start the generator: a cancellation before the task's first step is then raised in it
+        waiting.send(None)  # start now: a cancellation before the task's first step is then raised inside the generator
         self.task: asyncio.Task[Any] = loop.create_task(main(waiting), context=self._context)
 
     def _renew(self) -> None:

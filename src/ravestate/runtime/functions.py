@@ -24,7 +24,7 @@ class Functions:
         tasks: The runs of async rules.
         plain: The runs of plain functions, in worker threads; None before the first such run.
         last: The rule whose function started last.
-        running: Number of a run that did not end immediately → the context of its function.
+        running: Number of a run that did not end immediately → its rule context.
     """
 
     def __init__(self, loop: asyncio.AbstractEventLoop, runner: Runner, *, is_virtual: bool) -> None:
@@ -90,7 +90,7 @@ class Functions:
             self.drop(ctx, effect.reason)
 
     def holds(self, *, halted: bool) -> bool:
-        """Return whether effects must wait for rules just cancelled or, in virtual time, for a plain function.
+        """Return whether effects must wait: for rules just cancelled or, in virtual time, for a plain function.
 
         While the clock is `halted`, effects do not wait for the cancelled rules.
         """

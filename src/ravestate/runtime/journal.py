@@ -37,7 +37,10 @@ class Journal:
 
 
 def replay(engine: Engine, entries: Iterable[Entry]) -> list[list[Effect]]:
-    """Feed a journal to an engine; return the effects for each `Taken`. No rule's function is called."""
+    """Feed a journal to an engine; return the effects for each `Taken`. No rule's function is called.
+
+    The engine must be new, and have the policy and the patience of the journal's context.
+    """
     done: list[list[Effect]] = []
     for entry in entries:
         if isinstance(entry.event, Taken):

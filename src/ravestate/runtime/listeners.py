@@ -25,7 +25,7 @@ class Waiter:
 class Listeners:
     """The listeners of one context. Each is a function or a waiting task, and listens to one signal.
 
-    This class fills `watched`, the engine's table of the signals whose spikes it reports.
+    This class fills `watched`, the table of the signals whose spikes the engine reports.
     """
 
     __slots__ = ("_functions", "_waiters", "_watched")

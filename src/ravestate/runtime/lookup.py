@@ -1,4 +1,4 @@
-"""A check that a slot or a signal belongs to a context's policy. Its message ends with the mend."""
+"""A check that a slot or a signal belongs to a context's policy. Its error message suggests a correction."""
 
 from __future__ import annotations
 
@@ -20,7 +20,7 @@ def check_known(
     Args:
         thing: The value.
         known: The policy's slots or signals, by name.
-        kind: `Slot` or `Signal`, the kind of the known things.
+        kind: `Slot` if `known` has slots, `Signal` if it has signals.
         rule: The rule that uses the value; None for code outside the rules.
 
     Raises:

@@ -62,9 +62,10 @@ class RuleContext:
         """The object that code outside the rules passed to ``put`` or ``emit`` with the event that led to this run.
 
         It is None if that code passed no object, or if no event from outside led to the run: then the agent acts on its
-        own initiative. The object also passes through detached rules. If several events led to the run, the object of
-        the youngest spike counts; spikes of detached constraints count last. ``core:error`` has the object of the run
-        that failed. ``core:activity``, ``core:pressure`` and the failure of a predicate have none.
+        own initiative. The object also passes through detached rules. If several spikes of the run have an object, the
+        object of the youngest counts. The spikes of detached constraints count only if no other spike has an object.
+        ``core:error`` has the object of the run that failed. ``core:activity``, ``core:pressure`` and the failure of a
+        predicate have none.
         """
         self._payloads = effect.payloads
         self._values: dict[str, Any] = effect.values  # type: ignore[assignment]  # made for this run alone
@@ -190,10 +191,10 @@ class RuleContext:
         await self._host.quiet()
 
     def drive_clock(self, time: float) -> None:
-        """Set the context's clock forward to `time` (seconds since the context's start), as a simulation's clock says.
+        """Set the context's clock forward to `time` (seconds since its start), e.g. to a robot simulator's time.
 
         From the first call on, only calls of this method move the clock. So the context's time passes, and halts, with
-        the simulation's time. A time in the past changes nothing.
+        the simulator's time. A time in the past changes nothing.
         """
         self._alive()
         self._host.drive(time)

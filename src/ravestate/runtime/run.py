@@ -65,7 +65,10 @@ def warn_if_mute(policy: Policy) -> None:
 
 
 async def run_context(context: Context) -> None:
-    """Run a context until a rule, other code, SIGINT or SIGTERM stops it. A second signal aborts the shutdown."""
+    """Run a context until a rule, other code, SIGINT or SIGTERM stops it.
+
+    A second SIGINT or SIGTERM aborts the shutdown.
+    """
     with asked_by_signals(context.ask_to_stop):
         async with context:
             await context.until_stopped()
@@ -98,7 +101,7 @@ async def until_first_ends(*coroutines: Coroutine[Any, Any, object]) -> None:
 
 @contextlib.contextmanager
 def asked_by_signals(stop: Callable[[], None]) -> Generator[None]:
-    """Call `stop` at the first SIGINT or SIGTERM; at the second, abort the body of the ``with`` without an error.
+    """Call `stop` at each SIGINT or SIGTERM; the second also aborts the body of the ``with``, without an error.
 
     A cancellation by other code works as usual.
     """

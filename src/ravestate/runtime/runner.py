@@ -139,7 +139,7 @@ class Runner:
             self.receive(Write(slot, value, run, origin))
 
     def short_way(self) -> Parts | None:
-        """Return the engine's parts if an event may go directly to them; None if it must go through `receive`."""
+        """Return the engine's `Parts` if an event may go directly to them, which is faster; else None."""
         if self._journal is not None or self.closed or THREAD() != self._home:
             return None
         if self._pumping:
@@ -246,7 +246,7 @@ class Runner:
         try:
             for _ in range(rounds):
                 if (self._is_virtual or rules.cleaning) and functions.holds(halted=self.clock.halted):
-                    break  # effects must wait: the functions that hold them up schedule the next call when they end
+                    break  # effects must wait for functions; when these end, they schedule the next call
                 self._rounds += 1
                 if not todo:
                     if self._journal is not None:

@@ -1,10 +1,10 @@
 """Worker threads for rules that are plain functions.
 
-All contexts of a process share one pool of threads, and no context may take them all. The threads are daemons: a
-function that hangs must not keep the process from ending. (The standard library's pool joins its threads at exit.)
+All contexts of a process share one pool of threads, and no context may take them all. The threads are daemons, so
+that the process can end even if a function hangs. (The standard library's pool joins its threads at exit.)
 
-When the process ends, it still waits a while for running functions. A thread may be inside a C++ library, for instance
-to load a model. If the interpreter ended such a thread, the whole process might crash.
+When the process ends, it still waits up to `LAST_GRACE` seconds for running functions. A thread may be inside a C++
+library, for instance to load a model. If the interpreter ended such a thread, the whole process might crash.
 """
 
 from __future__ import annotations
@@ -152,7 +152,7 @@ class JobQueue:
         return job
 
     def abandon(self, job: Job) -> None:
-        """Give a job's place in the pool to the next job, although the first job may still run, or hang."""
+        """Drop a job that waits in this queue. A job in the pool may run on, but the next job gets its place."""
         with self._pool.change:
             if job in self._waiting:
                 self._waiting.remove(job)

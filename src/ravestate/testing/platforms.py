@@ -1,4 +1,4 @@
-"""Checks that every platform for conversations passes: order, separate users, failures, restarts.
+"""Checks that every platform for conversations must pass: order, separate users, failures, restarts.
 
 A platform's test runs each check against the platform, with the agent `echo` and a `Driver`:
 
@@ -113,7 +113,7 @@ async def check_users(driver: Driver) -> None:
 
 
 async def check_failure(driver: Driver) -> None:
-    """Check that a rule that fails in the middle of its utterance leaves its words so far, as a message."""
+    """Check that, if a rule fails in the middle of its utterance, the user gets the words so far as a message."""
     async with _limited(driver):
         await driver.say("ada", "fail")
         _agree(await _read(driver, "ada", 1), [PIECE])
@@ -121,7 +121,7 @@ async def check_failure(driver: Driver) -> None:
 
 
 async def check_restart(driver: Driver) -> None:
-    """Check that the agent answers messages from before, during and after a crash once, and in order."""
+    """Check that the agent answers messages from before, during and after a crash exactly once, and in order."""
     texts: dict[str, list[str]] = {user: [] for user in USERS}
 
     async def say_all(round: str) -> None:

@@ -44,8 +44,8 @@ class Simulation:
     Attributes:
         context: The simulated context, for everything that has no shortcut in this class.
         said: The values that were written to ``rawio.output``, in order.
-        fired: The names of the rules that fired, in the order in which they finished. A run has not fired if it
-            resigned, or if it failed before its first write.
+        fired: The name of the rule of each run that fired, in the order in which the runs ended. A run has not fired if
+            it resigned, or if it failed before its first write.
         failures: The name of each rule that failed, with its exception.
 
     Example:

@@ -60,8 +60,8 @@ def talk(
         modules: The agent's modules, without `voiceio`, which `talk` adds.
         settings: Name of a module → the module's settings, as for `Context`.
         seed: The seed of random choices.
-        show: A function that receives each utterance when it is over. While the agent speaks, it receives the user's
-            utterances only after the agent's utterance.
+        show: A function that receives each utterance when it is over. If the user speaks while the agent speaks, the
+            function receives the agent's utterance first.
         record: A function that receives each record of the trace.
 
     Raises:
@@ -116,7 +116,7 @@ def transcript(note: Callable[[Said], None]) -> Module:
     waiting: list[Said] = []
 
     def show() -> None:
-        """Call `note` with the agent's utterances that are over. If the agent is then silent, add the user's."""
+        """Call `note` with the agent's utterances that are over; if the agent is then silent, also with the user's."""
         for one in [one for one in begun if one.over]:
             begun.remove(one)
             if one.heard.strip():
@@ -129,7 +129,7 @@ def transcript(note: Callable[[Said], None]) -> Module:
 
     @witness.rule(when=voiceio.utterance.max_age(None).detached(), background=True)
     async def hear_user(ctx: RuleContext) -> None:
-        """Call `note` with an utterance of the user, after the utterance of the agent that it interrupts."""
+        """Call `note` with an utterance of the user; if the agent is speaking, after the agent's utterance."""
         one = ctx.payload(voiceio.utterance)
         waiting.append(Said("user", one.text, one.start, one.end))
         show()

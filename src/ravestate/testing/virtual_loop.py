@@ -12,7 +12,7 @@ from typing import Any
 
 from ravestate.errors import EngineError
 
-REAL_LIMIT = 30.0  # plain functions may hold up virtual time for at most this many real seconds
+REAL_LIMIT = 30.0  # virtual time waits at most this many real seconds for plain functions
 WORKING = 0.1  # plain functions that use at least this share of a processor are computing, and get more time
 WORK_FACTOR = 10  # computing functions get this many times as long, so that a slow machine gives the same result
 
@@ -30,7 +30,7 @@ class _Timer(asyncio.TimerHandle):
 
 
 class VirtualLoop(asyncio.SelectorEventLoop):
-    """A loop that runs as fast as it can, until nothing is left to do before `goal`.
+    """A loop that runs as fast as it can, until nothing is left to do at or before the time `goal`.
 
     Plain functions in threads take no virtual time. The loop waits for the functions that `busy()` names, and for the
     functions that `asyncio.to_thread` runs.
@@ -92,7 +92,10 @@ class VirtualLoop(asyncio.SelectorEventLoop):
         return timer
 
     def give_up(self, rule: str) -> None:
-        """Stop the loop, because rules repeat endlessly in one instant. `run_to` then raises an error with the rule."""
+        """Stop the loop, because rules repeat endlessly in one instant.
+
+        `run_to` then raises an error that names `rule`.
+        """
         self._endless = rule
         self.stop()
 
