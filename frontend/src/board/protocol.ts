@@ -202,7 +202,7 @@ export interface Missing {
   raisers: Raiser[];
 }
 
-/** Something that happened to the rule for this cause, at `time` (seconds); `rules` are the other rules involved. */
+/** Something that happened to the rule for the cause, at `time` (seconds); `rules` are the other rules involved. */
 export interface Moment {
   time: number;
   words: string;
@@ -250,7 +250,7 @@ export interface Pressed {
   until: number;
 }
 
-/** A rule that may raise a missing signal, and the outcome of its run in this causal group. */
+/** A rule that may raise a missing signal, and the outcome of its run for the cause. */
 export interface Raiser {
   rule: string;
   /** The outcome of the rule's run, or `running`, or `not run`. */

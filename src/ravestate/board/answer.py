@@ -1,4 +1,7 @@
-"""The explanation of why a rule did not fire, as data (law L25). `ravestate.board.why_not` derives it from a trace."""
+"""The explanation of why a rule did not fire, as data (law L25). `ravestate.board.why_not` derives it from a trace.
+
+An explanation is about one rule and one spike. "For the cause" means: in the causal group of this spike.
+"""
 
 from __future__ import annotations
 
@@ -10,7 +13,7 @@ from ravestate.engine.reasons import Verdict
 
 @dataclass(frozen=True, slots=True)
 class Raiser:
-    """A rule that may raise a missing signal, and the outcome of its run in this causal group.
+    """A rule that may raise a missing signal, and the outcome of its run for the cause.
 
     Attributes:
         outcome: The outcome of the rule's run, or ``running``, or ``not run``.
@@ -36,7 +39,7 @@ class Missing:
 
 @dataclass(frozen=True, slots=True)
 class Moment:
-    """Something that happened to the rule for this cause, at `time` (seconds); `rules` are the other rules involved."""
+    """Something that happened to the rule for the cause, at `time` (seconds); `rules` are the other rules involved."""
 
     time: float
     words: str
@@ -45,16 +48,16 @@ class Moment:
 
 @dataclass(frozen=True, slots=True)
 class WhyNot:
-    """How close a rule came to a run for an input, and what stopped it.
+    """How far a rule got on the way to a run for an input, and what stopped the rule.
 
     Attributes:
         rule, spike, signal, time: The rule and the spike in question; the time is the spike's birth (seconds).
         verdict: The furthest step that an attempt of the rule reached.
         words: The reason for the verdict, as text.
         at: The time at which the verdict was decided (seconds); None while it is undecided.
-        clause: The number of that attempt's clause, from 0; None if there was no attempt.
+        clause: The number of the clause of the furthest attempt, from 0; None if there was no attempt.
         missing: The signals that the rule lacked; empty if it lacked none, or if the verdict has another reason.
-        moments: The rule's history for this cause. If there are more than 200 moments, one moment takes the place of
+        moments: The rule's history for the cause. If there are more than 200 moments, one moment takes the place of
             those in the middle.
         whole: Whether the trace reaches back to before the spike; if it does not, the answer may be incomplete.
     """

@@ -25,9 +25,9 @@ class Attempt:
     """One activation of a rule, as far as the trace shows it.
 
     `lacks` has the signals for which the attempt has no spike. If the attempt loses its last spikes in one instant,
-    `lacks` stays as it was before that instant. `complete` is the time at which the attempt took its last missing spike
-    (seconds); None while a spike is missing. `started` is None until the run starts. `settled` is None until the run
-    ends.
+    `lacks` stays as it was before that instant: it then names the signals that were missing at the end. `complete` is
+    the time at which the attempt took its last missing spike (seconds); None while a spike is missing. `started` is
+    None until the run starts. `settled` is None until the run ends.
     """
 
     id: int
@@ -64,7 +64,7 @@ class Attempt:
 
     @property
     def spikes(self) -> Iterable[int]:
-        """The numbers of the spikes with which the attempt's run began; without a run, of all spikes that it took."""
+        """The numbers of the spikes with which the attempt's run began; without a run, of all spikes it took."""
         return [held.spike for held in self.held] if self.started is None else self.started.spikes
 
     def take(self, record: t.Held) -> None:
@@ -243,7 +243,7 @@ class History:
 
 
 class Rivals:
-    """Writes the phrases of an explanation about other rules: a rule's rivals, and the rule that answered first."""
+    """Writes the parts of an explanation that are about a rule's rivals, or about the rule that answered first."""
 
     def __init__(self, history: History, description: Description) -> None:
         self._history = history
@@ -273,7 +273,7 @@ class Rivals:
     def ahead(self, name: str, rule: RuleView, attempt: Attempt, time: float) -> str:
         """Return a text in brackets: by how much effective utility (nats) the rule `name` is ahead of `rule`.
 
-        If both utilities are equal, the text says what decides instead (L15). It is empty if `rule` is ahead.
+        If both utilities are equal, the text says what decides instead (L15). If `rule` is ahead, the text is empty.
         """
         other = self._description.rule(name)
         if other is None or name == rule.name:
@@ -289,10 +289,10 @@ class Rivals:
         return " (equal utility, declared earlier)" if self._is_earlier(other, rule) else ""
 
     def answerer(self, rule: RuleView, lost: GaveUp | Passed) -> tuple[str, str]:
-        """Return the name of the rule that answered a lost spike, and its path as text.
+        """Return the name of the rule that answered a lost spike, and a text with this name.
 
-        If another rule raised a spike on which the answering rule ran, the path is ``raiser → name``. Otherwise, it is
-        the name.
+        If another rule raised a spike on which the answering rule ran, the text is ``raiser → name``. Otherwise, the
+        text is the name.
         """
         by, run = (lost.by, lost.run) if lost.by else self._answered(rule, lost.time)
         before = self._history.before(run)
@@ -325,7 +325,8 @@ class Rivals:
     def _answered(self, rule: RuleView, time: float) -> tuple[str, int]:
         """Return the other rule that first answered the group, and the number of its activation.
 
-        Only rules that write a slot of `rule` count, and only answers up to `time` (seconds).
+        Only rules that write a slot of `rule` count, and only answers up to `time` (seconds). If the trace shows no
+        such answer, return ``("another rule", 0)``.
         """
         if rule.name not in self._first:
             slots = set(rule.writes)

@@ -1,4 +1,4 @@
-"""Recorders keep the records of contexts for inspectors, with bounded memory and cost.
+"""Recorders keep the records of contexts for inspectors (one serves each open board), with bounded memory and cost.
 
 Inspectors have no queues. Records are numbered, and each inspector reads the records that it lacks. A slow inspector
 misses records that are already deleted, and delays nothing else.
@@ -171,7 +171,7 @@ class Recorder:
             self._grown()
 
     def _take_after_gap(self, record: Record) -> None:
-        """Take the first spike after a gap; its number shows how many spikes were missed."""
+        """Take a record. The first spike ends the gap: its number shows how many spikes were missed."""
         if isinstance(record, Born) and self._gap is not None:
             self._gap.spikes = record.spike - self._spike - 1
             self.missed += self._gap.spikes

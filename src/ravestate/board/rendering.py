@@ -75,8 +75,8 @@ def render(value: object, most: int = 2000) -> Rendered:
 
 
 def not_json(value: object, most: int = 2000) -> bool:
-    """Return whether JSON cannot express a value, judging by its first `most` characters."""
-    if isinstance(value, (int, float)):
+    """Return whether JSON cannot express a value. This checks only the first `most` characters of its JSON."""
+    if isinstance(value, (int, float)):  # even infinity, because JSON has other numbers to write in its place
         return False
     try:
         _start(_json(value, 0), most)

@@ -73,7 +73,7 @@ class _Inquiry:
         self.description = description
         self.opens = opens
         self.rivals = Rivals(history, description)
-        self.asked: list[str] = []  # the rules whose explanation is in progress, so that none is explained twice
+        self.asked: list[str] = []  # the rules that are being explained; so a circle of causes ends
         self._judged: dict[str, Judgement] = {}
 
     def answer(self, rule: RuleView, whole: bool) -> WhyNot:

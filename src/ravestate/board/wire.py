@@ -33,7 +33,7 @@ RENDERED = {"payload": PAYLOAD, "value": VALUE}
 
 
 def _shape(name: str, kind: type[Any]) -> Any:
-    """Return a typed dict: the plain data of records of the class `kind`."""
+    """Return the type (a `TypedDict`) of the plain data of records of the class `kind`."""
     hints = get_type_hints(kind)
     fields: dict[str, Any] = {"kind": Literal[name]}
     for field in dataclasses.fields(kind):

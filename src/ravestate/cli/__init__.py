@@ -1,7 +1,7 @@
 """The command line: ``ravestate COMMAND ...``, one file for each command.
 
-Exit codes: 0 for success, 1 if the agent has faults or fails, 2 for wrong use, 130 after Ctrl-C. A user's mistake produces a message,
-never a traceback.
+Exit codes: 0 for success, 1 if the agent has faults or fails, 2 for wrong use, 130 after Ctrl-C. A user's mistake
+produces a message, never a traceback.
 """
 
 from __future__ import annotations
@@ -31,7 +31,7 @@ COMMANDS = {
     "vision": "say whose faces are in pictures, learn a face, check the camera",
     "activity": "name the activity that a person performs in a video, teach an activity",
     "ros": "check an agent's topics and services, list the network's topics, show a topic's messages",
-    "robot": "start a stand-in robot with a face on a web page, alone or with an agent behind it",
+    "robot": "start a stand-in robot with a face on a web page, alone or controlled by an agent",
     "new": "write a small project to start from",
 }
 
@@ -104,8 +104,8 @@ def script() -> int:
 
     At its end, the interpreter stops the remaining threads in the middle of their work. If a thread is inside a C++
     library, for instance to load a model, stopping it aborts the process. So if a daemon thread is left, this
-    function ends the process itself, after everything else has been cleaned up. It waits for threads no longer than `LAST_GRACE`, which is enough for
-    functions that save something.
+    function ends the process itself, after everything else has been cleaned up. It waits for threads no longer than
+    `LAST_GRACE`, which is enough for functions that save something.
     """
     import atexit
     import os

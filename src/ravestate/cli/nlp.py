@@ -71,7 +71,7 @@ def run(options: argparse.Namespace) -> int:
         if designed:
             designed.load()
     except ModelMissing as error:
-        print(f"ravestate nlp: the analysis has only exact matches: {error}", file=sys.stderr)
+        print(f"ravestate nlp: texts match only examples that they equal: {error}", file=sys.stderr)
     names: Sequence[str] = options.agent_names or Settings().agent_names
     texts: Iterable[str] = [" ".join(options.text)] if options.text else _lines()
     reader = (
@@ -104,7 +104,7 @@ def _designed(options: argparse.Namespace) -> Matcher | None:
 
 
 def _scores(designed: Matcher | None, seen: Analysis) -> dict[str, float]:
-    """Return the best scores of the designer's intents, highest first."""
+    """Return the best scores of the agent's own intents, highest first. Their names have the module before a colon."""
     ranked = (
         [match for one in designed.ranked_all(seen.sentences) for match in one if ":" in match.name] if designed else []
     )

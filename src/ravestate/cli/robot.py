@@ -1,4 +1,4 @@
-"""``ravestate robot``: a stand-in robot with a face on a web page, alone or with an agent behind it."""
+"""``ravestate robot``: a stand-in robot with a face on a web page, alone or controlled by an agent."""
 
 from __future__ import annotations
 
@@ -21,7 +21,7 @@ if TYPE_CHECKING:
 def add_arguments(parser: argparse.ArgumentParser) -> None:
     agents.add_arguments(parser)
     complete.add_arguments(parser)
-    parser.add_argument("--agent", action="store_true", help="also run the complete agent behind the robot")
+    parser.add_argument("--agent", action="store_true", help="also run the complete agent, which controls the robot")
     parser.add_argument(
         "--on", choices=("auto", "bus", "ros1", "ros2"), default="auto",
         help="where the robot's topics are: ROS 1, ROS 2, or the built-in bus; by default a ROS that runs here, else the bus",

@@ -11,7 +11,7 @@ from typing import Any
 from ravestate.cli.ros_params import from_file, from_server, setting
 
 SPECIAL = {"__ns": "namespace", "__node": "node", "__name": "node"}
-"""Special name in a remapping → the setting of ``ros1`` and ``ros2`` that it gives."""
+"""Special name in a remapping → the setting of ``ros1`` or ``ros2`` that it sets."""
 
 IGNORED = ("__log", "__master", "__ip", "__hostname")
 """Arguments of ROS 1 that say nothing about the agent."""
