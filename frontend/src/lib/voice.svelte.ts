@@ -52,7 +52,7 @@ export class Voice {
 
   constructor(private readonly options: Options) {}
 
-  /** The visitor presses the button. `at` is its time (milliseconds); a busy page may get the event late. */
+  /** The visitor presses the button at the time `at` (milliseconds). A busy page may get the event late. */
   press(at = performance.now()): void {
     if (this.#pressed !== null) return;
     this.#pressed = at;

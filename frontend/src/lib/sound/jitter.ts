@@ -4,8 +4,8 @@ import { Resampler } from "./resampler";
 export const OUT_RATE = 24_000;
 
 /**
- * The buffer collects this many seconds of sound before the loudspeaker begins, so that a late piece makes no gap. It
- * begins with `LEAST`. Each gap multiplies the number by `GROWTH`, up to `MOST`.
+ * The buffer collects this many seconds of sound before the loudspeaker begins, so that a late piece makes no gap. The
+ * number is `LEAST` at first. Each gap multiplies it by `GROWTH`, up to `MOST`.
  */
 const LEAST = 0.08;
 const MOST = 0.4;

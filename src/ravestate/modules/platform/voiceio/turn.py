@@ -117,7 +117,7 @@ def completeness(text: str, language: str = "en") -> Literal["open", "doubtful",
 
 
 def _may_go_on(text: str, last: Mapping[str, float], language: str) -> bool:
-    """Return whether the last word is unclear, or may be another word, one that seldom ends a sentence.
+    """Return whether the last word is unclear, or may be a different word that seldom ends a sentence.
 
     A recogniser has learnt from whole sentences. So it may hear "a photograph of mine" if the user says "a photograph
     of my", and pauses.
