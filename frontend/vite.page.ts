@@ -1,9 +1,12 @@
-// A page of its own, which ships with the Python package that serves it.
+// The configuration of a page that is built on its own, into the Python package that serves it.
 import { fileURLToPath } from "node:url";
 import { svelte } from "@sveltejs/vite-plugin-svelte";
 import { defineConfig } from "vite";
 
-/** The build of src/NAME into a folder of the Python package. Names are fixed: the server tells versions apart by a hash. */
+/**
+ * Return the configuration that builds src/NAME into a folder of the Python package. File names are fixed: the server
+ * tells versions apart by a hash.
+ */
 export const page = (name: string, outDir: string) =>
   defineConfig({
     root: `src/${name}`,

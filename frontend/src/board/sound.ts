@@ -111,7 +111,7 @@ export class Sound {
   }
 }
 
-/** Return the text in a rendered value; empty if it is none. A cut text is not valid JSON. */
+/** Return the text in a rendered value; empty if the value is no text. A cut text is not valid JSON. */
 function words(json: string): string {
   try {
     const value: unknown = JSON.parse(json);

@@ -1,4 +1,7 @@
-/** The visible part of the timeline: `span` seconds from `left` on. While it follows, its right edge is the present. */
+/**
+ * The visible part of the timeline: `span` seconds from `left` on. While the view follows, its right edge is the
+ * present.
+ */
 export class View {
   left = 0;
   span = 20;
@@ -47,7 +50,10 @@ export class View {
   }
 }
 
-/** Return the step of an axis: the least of 1, 2, 5 × 10ⁿ seconds, or of round minutes, with `gap` pixels between marks. */
+/**
+ * Return the time between two marks of an axis (seconds), so that they are at least `gap` pixels apart. It is 1, 2 or
+ * 5 × 10ⁿ seconds, or beyond 20 s a round number of minutes.
+ */
 export function step(span: number, width: number, gap: number): number {
   const least = (span / Math.max(width, 1)) * gap;
   for (const seconds of [60, 120, 300, 600, 1800, 3600, 7200, 21600]) {

@@ -15,7 +15,10 @@ export interface Camera {
   close: () => void;
 }
 
-/** Open the camera; `onlost` is called if it goes, for example unplugged. If it does not open, `explain` says why. */
+/**
+ * Open the camera. If it does not open, `explain` says why.
+ * @param onlost is called if the camera goes away, for example because it is unplugged
+ */
 export async function openCamera(onlost: () => void): Promise<Camera> {
   if (!window.isSecureContext || navigator.mediaDevices === undefined)
     throw new DOMException("", "SecurityError");

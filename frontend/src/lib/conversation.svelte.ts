@@ -23,7 +23,7 @@ const WRITING = 2000;
 
 /** A conversation as a window shows it: its lines, the growing utterance, and the state of the connection. */
 export class Conversation {
-  /** Plain objects, replaced on each change: there may be thousands. */
+  /** Each change replaces the list. Its lines are plain objects, because there may be thousands. */
   lines: readonly Line[] = $state.raw([]);
   partial = $state("");
   typing = $state(false);
@@ -31,7 +31,7 @@ export class Conversation {
   paused = $state(false);
   /** Things that the visitor could say first. */
   suggestions: readonly string[] = $state.raw([]);
-  /** A line that this browser has not shown before. */
+  /** The note above the suggestions; empty if this browser has shown it before. */
   note = $state("");
   agent = $state("Ravestate");
   status: Status = $state("connecting");
@@ -52,7 +52,7 @@ export class Conversation {
   #recalled = 0; // The number of the last message from before a reload.
   #anew = false; // Whether the next message begins a conversation that replaces a lost one.
   #epoch = 0; // The number of conversations so far, for unique keys of lines.
-  #listens = false; // Whether the server takes `writing`.
+  #listens = false; // Whether the server accepts `writing`.
   #told = Number.NEGATIVE_INFINITY; // The time of the last `writing`.
   #connection: Connection;
 

@@ -28,7 +28,7 @@ export class Heights {
     return sum;
   }
 
-  /** Return the first and the last line between two places. */
+  /** Return the indices of the first and the last line between two places (pixels from the first line's top). */
   between(lines: readonly Keyed[], top: number, bottom: number): { first: number; last: number } {
     const end = lines.length - 1;
     let first = 0;

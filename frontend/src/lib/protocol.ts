@@ -172,7 +172,7 @@ export interface Paused {
   on: boolean;
 }
 
-/** The words so far of an utterance that the visitor is still speaking. Empty after it has become a `Message`. */
+/** The words so far of an utterance that the visitor is still speaking; empty once the utterance is a `Message`. */
 export interface Caption {
   type: "caption";
   text: string;
@@ -194,7 +194,7 @@ export interface Flush {
   n: number;
 }
 
-/** The agent has begun to listen to this window's microphone. It may have had to load its models first. */
+/** The agent has begun to listen to this window's microphone. Before that, the agent may load its models. */
 export interface Listening {
   type: "listening";
 }

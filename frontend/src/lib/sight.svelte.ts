@@ -2,7 +2,7 @@ import { type Camera, explain, openCamera } from "./camera";
 import type { ClientFrame, Face, ServerFrame } from "./protocol";
 import { isAgreed, markAgreed } from "./store";
 
-/** Milliseconds after which a picture is tried again if the camera had none. */
+/** If the camera has no picture yet, the page tries again after this many milliseconds. */
 const AGAIN = 250;
 
 export interface Options {
@@ -53,7 +53,7 @@ export class Sight {
     void this.#start();
   }
 
-  /** Turn the camera off, for a reason that the visitor does not know. */
+  /** Turn the camera off. `why` tells the visitor the reason, unless they turn it off themselves. */
   stop(why = ""): void {
     this.#attempt += 1;
     if (this.state === "on") this.options.send({ type: "camera", on: false });
@@ -65,7 +65,7 @@ export class Sight {
     this.#forget();
   }
 
-  /** Turn the camera off if it is on. */
+  /** Turn the camera off if it is on, and hide the notice. */
   pause(why: string): void {
     if (this.state === "asking") this.stop();
     else if (this.state !== "off") this.stop(why);
@@ -90,7 +90,7 @@ export class Sight {
     if (frame.type === "look") void this.#answer(frame.n);
     else if (frame.type === "faces") this.faces = this.state === "on" ? frame.faces : [];
     else if (frame.type === "unseen") {
-      this.state = this.state === "on" ? "starting" : this.state; // the server knows already
+      this.state = this.state === "on" ? "starting" : this.state; // so that `stop` sends nothing: the server knows
       this.pause(`The camera is off: ${frame.text}.`);
     }
   }

@@ -1,7 +1,7 @@
 import type { ClientFrame, ServerFrame } from "./protocol";
 import { type Devices, explain, openDevices } from "./sound/devices";
 
-/** Milliseconds of a press that make it a hold. */
+/** A press of at least this many milliseconds is a long press. */
 const HOLD = 400;
 
 /** Milliseconds between two reports of the play-out position. */
@@ -17,9 +17,10 @@ export interface Options {
 }
 
 /**
- * The visitor's voice and the agent's: the microphone, open or while a button is held, and the loudspeaker.
+ * The visitor's microphone, and the loudspeaker for the agent's voice.
  *
- * A short press of the button opens the microphone, or turns it off. A long press lets the visitor talk while it lasts.
+ * A short press of the button opens the microphone, or turns it off. A long press lets the visitor talk while they
+ * hold the button.
  */
 export class Voice {
   /** Whether the agent can hear. */
@@ -41,17 +42,17 @@ export class Voice {
 
   #devices: Devices | null = null;
   #attempt = 0; // The number of attempts to open the devices; an older attempt is out of date.
-  #pressed: number | null = null; // The time of the press that lasts (milliseconds).
+  #pressed: number | null = null; // When the press began (milliseconds); null if the button is not held.
   #began = false; // Whether this press has turned the voice on.
   #connected = false;
   #stream = -1; // The number of the agent's stream of sound; -1 without one.
   #hushed = false; // Whether the visitor has stopped this stream.
   #told = Number.NEGATIVE_INFINITY; // The time of the last `played`.
-  #fading: ReturnType<typeof setTimeout> | undefined; // The end of the caption.
+  #fading: ReturnType<typeof setTimeout> | undefined; // The timer that removes the caption.
 
   constructor(private readonly options: Options) {}
 
-  /** The visitor presses the button. `at` is the time of the press (milliseconds); a busy page may get it late. */
+  /** The visitor presses the button at the time `at` (milliseconds). A busy page may get the event late. */
   press(at = performance.now()): void {
     if (this.#pressed !== null) return;
     this.#pressed = at;
@@ -81,7 +82,7 @@ export class Voice {
     this.#talk(mode === "open");
   }
 
-  /** Turn the microphone and the sound off, for a reason that the visitor does not know. */
+  /** Turn the microphone and the sound off. `why` tells the visitor the reason, unless they turn it off themselves. */
   stop(why = ""): void {
     this.#attempt += 1;
     this.#pressed = null;
@@ -95,7 +96,7 @@ export class Voice {
     this.show("");
   }
 
-  /** Turn everything off if it is on. */
+  /** Turn the microphone and the sound off if they are on. */
   pause(why: string): void {
     if (this.state !== "off") this.stop(why);
   }
@@ -136,7 +137,7 @@ export class Voice {
       this.#devices?.flush(frame.n);
     } else if (frame.type === "taken") {
       const why = `The microphone is off: ${frame.text}.`;
-      this.state = this.state === "on" ? "starting" : this.state; // the server knows already
+      this.state = this.state === "on" ? "starting" : this.state; // so that `stop` sends nothing: the server knows
       this.pause(why);
     }
   }

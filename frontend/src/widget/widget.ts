@@ -27,7 +27,7 @@ const STYLE = `
   }
 `;
 
-/** Milliseconds that the chat has to report after its frame has loaded. */
+/** If the chat does not report within this many milliseconds after its frame has loaded, something is wrong. */
 const PATIENCE = 1000;
 
 const script = document.currentScript;
@@ -65,7 +65,7 @@ function embed(page: URL, options: DOMStringMap): void {
 
   function show(open: boolean): void {
     if (open && frame === null) {
-      frame = document.createElement("iframe"); // only now: visitors who do not open it stay unconnected
+      frame = document.createElement("iframe"); // only now, so that other visitors do not connect
       frame.title = options.title ?? "Talk with us";
       frame.allow = "microphone; camera; autoplay";
       frame.referrerPolicy = "origin"; // so that the server's log can name a site that may not embed the chat

@@ -16,8 +16,9 @@ _SURROGATES = re.compile(r"[\ud800-\udfff]")
 def without_controls(text: str) -> str:
     """Return `text` without control characters. Use this function for a piece of a longer text.
 
-    Line feeds and tabs stay. Lone surrogates, which in Python stand for bytes that are not UTF-8, become U+FFFD. So the
-    result can always be encoded.
+    A piece may have only a part of an escape sequence, so these sequences are not recognised. Line feeds and tabs stay.
+    Lone surrogates, which in Python stand for bytes that are not UTF-8, become U+FFFD. So the result can always be
+    encoded.
 
     Example:
         >>> without_controls("a\\x00b\\udcff")

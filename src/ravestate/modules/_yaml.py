@@ -14,7 +14,10 @@ if TYPE_CHECKING:
 
 
 def read_nodes(file: Path | Traversable, what: str) -> yaml.Node | None:
-    """Return the root node of a YAML file; None if the file is empty. For the arguments, see `read_text`."""
+    """Return the root node of a YAML file; None if the file is empty.
+
+    For the arguments and errors, see `read_text`. A text that is not valid YAML raises a `DeclarationError`, too.
+    """
     return compose_yaml(read_text(file, what), str(file))
 
 

@@ -3,7 +3,10 @@ import { Resampler } from "./resampler";
 /** The sampling rate of the agent's sound (Hz). */
 export const OUT_RATE = 24_000;
 
-/** Seconds of sound that wait before the loudspeaker begins, so that a late piece makes no gap; more after each gap. */
+/**
+ * The buffer collects this many seconds of sound before the loudspeaker begins, so that a late piece makes no gap. The
+ * number is `LEAST` at first. Each gap multiplies it by `GROWTH`, up to `MOST`.
+ */
 const LEAST = 0.08;
 const MOST = 0.4;
 const GROWTH = 1.5;

@@ -26,7 +26,7 @@ export class Resampler {
     this.#at = this.#half;
   }
 
-  /** Return the output that the input so far makes; the filter needs a few samples in advance. */
+  /** Return the output for the input so far, except the last samples: the filter also needs the samples after them. */
   push(input: Float32Array): Float32Array {
     const whole = new Float32Array(this.#history.length + input.length);
     whole.set(this.#history);

@@ -1,1 +1,1 @@
-"""Separate processes that hold models. A module names one of its own programs as the backend of such a process."""
+"""Separate processes that hold models. The program in such a process is the *backend*; a module brings its own."""

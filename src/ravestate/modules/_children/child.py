@@ -9,7 +9,7 @@ import tempfile
 from collections.abc import Mapping, Sequence
 
 ENDING = 2.0
-"""After its pipe is closed, a process may take this many seconds to end by itself."""
+"""After its standard output is closed, a process may take this many seconds to end by itself; then it is killed."""
 
 
 class Child:
@@ -17,7 +17,8 @@ class Child:
 
     Args:
         command: The program and its arguments.
-        piped: Whether standard input and output are pipes. If not, the input is empty, and the output joins the errors.
+        piped: Whether standard input and output are pipes. If not, the input is empty, and the output goes to the error
+            output.
         pass_fds: The file descriptors that the process inherits.
         environment: Environment variables in addition to those of this process.
 

@@ -111,8 +111,8 @@ class ModelProcess:
             header: The request, as data for JSON.
             data: Bytes that belong to the request, such as a picture or a sound.
             seconds: The maximum time for the answer. The time for loading the model does not count.
-            unwanted: An event that another thread sets if the answer is no longer needed. If the request is then still
-                waiting for earlier requests, it is dropped.
+            unwanted: An event that another thread sets if the answer is no longer needed. A request that still waits
+                for earlier requests is then dropped.
 
         Raises:
             PlatformError: The model cannot be loaded, refuses the request, has crashed, or does not answer within
@@ -148,7 +148,7 @@ class ModelProcess:
             self.restarts += 1
             self._end()
         try:
-            # -P: a file in the program's folder must not replace a package of the same name.
+            # -P: a file beside `SERVER` must not replace a package of the same name.
             self._process = Child([self._python, "-P", str(SERVER), str(self._backend.program)], piped=True)
         except OSError as error:
             raise PlatformError(

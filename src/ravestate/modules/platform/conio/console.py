@@ -127,8 +127,8 @@ class Console:
     def utter(self, text: str, origin: object = None) -> None:
         """Print `text` and a line end.
 
-        If `text` begins with the streamed pieces, only the rest is printed, after the pieces. If `text` begins in
-        another way, the streamed line ends first, and later pieces continue on a new line.
+        If `text` begins with the pieces that `grow` has printed, only the rest of `text` is printed. If `text` begins
+        in another way, the line of pieces ends first, and later pieces continue on a new line.
         """
         text = printable(text)
         if self._streamed and (rest := rawio.rest(text, self._streamed)) is not None:

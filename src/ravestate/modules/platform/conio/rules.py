@@ -28,7 +28,7 @@ USER = "conio"  # the key of the user at the console in ``interloc.users``
 )
 async def listen(ctx: rs.RuleContext) -> None:
     """Write each typed line to ``rawio.input``; end the agent after the last line."""
-    expect_prompt()  # models load after the prompt
+    expect_prompt()  # so that models load only after the prompt is on the screen
     try:
         await serve(ctx)
     finally:

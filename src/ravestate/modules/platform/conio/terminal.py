@@ -34,8 +34,8 @@ _OPEN = "…"  # the mark at the end of a streamed line that the user has interr
 class Terminal:
     """Reads lines with prompt_toolkit, and prints texts without disturbing the line that the user types.
 
-    A finished line appears above the prompt. A streamed line is the first row of the prompt until it is finished or
-    full. It can grow while the user types below it.
+    A finished line appears above the prompt. A line that comes in pieces (`stream`) is the first row of the prompt
+    until it is finished or full. This row can grow while the user types below it.
     """
 
     interactive = True
@@ -51,8 +51,8 @@ class Terminal:
     ) -> None:
         """Make a console; it reads and writes nothing yet.
 
-        The file `history` keeps typed lines. If it cannot be written, they are kept for this session only. `on_key` is
-        called after each key that changes the line, unless the line is then empty.
+        The file `history` keeps typed lines. If the file cannot be written, the lines are kept for this session only.
+        `on_key` is called after each key that changes the line, unless the line is then empty.
         """
         self._prompt = prompt
         self._streamed = ""
@@ -121,7 +121,7 @@ class Terminal:
         """End the line of pieces, as `Screen.end` describes."""
         late, self._late, self._left_open = self._late, "", False
         line, self._streamed = self._streamed, ""
-        if late and not late.endswith(_OPEN):  # the mark at the end means that the text was interrupted: drop it
+        if late and not late.endswith(_OPEN):  # the mark means that the agent broke off the text: drop the late pieces
             line += late
         if line:
             self.show(line)

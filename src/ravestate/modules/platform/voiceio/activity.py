@@ -40,7 +40,7 @@ class Activity:
         self._last: NDArray[np.float32] = np.zeros(_CONTEXT, np.float32)
 
     def probability(self, chunk: Samples) -> float:
-        """Return the probability that the next `CHUNK` samples are speech."""
+        """Return the probability that the next `CHUNK` samples (16 kHz) are speech."""
         sound: NDArray[np.float32] = chunk.astype(np.float32) / np.float32(32768)
         given = np.concatenate([self._last, sound])[None, :]
         found, self._h, self._c = self._session.run(None, {"input": given, "h": self._h, "c": self._c})
@@ -53,6 +53,9 @@ def speech_spans(pcm: bytes, above: float = 0.5, gap: float = 0.5) -> list[tuple
 
     A chunk is speech if its probability is at least `above`. A pause shorter than `gap` seconds does not end a span.
     A span of a single chunk is left out.
+
+    Raises:
+        PlatformError: The model is missing.
     """
     judge, found = Activity(), list[tuple[float, float]]()
     sound = samples(pcm)
@@ -78,7 +81,11 @@ def _session() -> Any:
 
 
 def session(file: Path) -> Any:
-    """Return an ONNX model that runs in one thread."""
+    """Return the ONNX model in a file. It runs in one thread.
+
+    Raises:
+        PlatformError: The file cannot be loaded.
+    """
     onnxruntime: Any = import_module("onnxruntime")  # the package has no types
     options = onnxruntime.SessionOptions()
     # Otherwise, integer products overflow on processors without VNNI, so probabilities would differ between machines.

@@ -46,10 +46,11 @@ def by_places(text: str, found: Sequence[tuple[int, float]], length: float) -> t
 
 
 def by_phonemes(text: str, spoken: Sequence[tuple[float, int]], length: float) -> tuple[Word, ...]:
-    """Return the words of a text with their times, from the spoken words: time (seconds) and number of phonemes.
+    """Return the words of a text with their times, from the time and the number of phonemes of each spoken word.
 
     One spoken word may be several written words ("there was a"), and a written number is several spoken words. The
-    function chooses the alignment with the most plausible lengths.
+    function chooses the alignment with the most plausible lengths. All times, and the `length` of the sound, are in
+    seconds.
     """
     places = places_of(text)
     expected = [_expected(text[begin:end]) for begin, end in places]
@@ -82,6 +83,7 @@ def by_phonemes(text: str, spoken: Sequence[tuple[float, int]], length: float) -
     return _filled(text, places, times, length)
 
 
+# Pairs: how many written words may be spoken as how many words.
 _STEPS = [(1, said) for said in range(1, _MOST + 1)] + [(2, 1), (3, 1), (4, 1)]
 
 

@@ -1,4 +1,8 @@
-"""Find the beginnings and pauses of the user's speech, and keep the sound of the turn so far."""
+"""Find the beginnings and pauses of the user's speech, and keep the sound of the turn so far.
+
+A *chunk* has `CHUNK` samples (32 ms). A chunk of speech is *articulate* if it comes from an open mouth (see
+`is_articulate`). An *onset* is the beginning of speech.
+"""
 
 from __future__ import annotations
 
@@ -44,7 +48,7 @@ Event = Literal["onset", "articulate", "another", "pause"]
 
 
 class Canceller(Protocol):
-    """The part of an echo canceller that an ear uses."""
+    """The part of an echo canceller that an ear uses. See `EchoCanceller`."""
 
     def clean(self, near: bytes, far: bytes) -> bytes: ...
 
@@ -70,8 +74,8 @@ class Turn:
     pitches: list[float | None] = field(default_factory=list[float | None])
     """The pitch (Hz) of each chunk; None for a chunk without a voice."""
     continued: tuple[int, float, float] | None = None
-    """How the turn last continued after a pause: the first new chunk, its time, and the time at which the pause
-    began."""
+    """How the turn last continued after a pause: the index of the first new chunk, its time, and the time at which
+    the pause began."""
 
     @property
     def sound(self) -> bytes:

@@ -36,7 +36,10 @@ class EchoCanceller:
         self._library.speex_preprocess_ctl(self._after, _SET_STATE, self._echo)
 
     def clean(self, near: bytes, far: bytes) -> bytes:
-        """Return a frame of the microphone's sound without the echo of `far`, the loudspeaker's sound at that time."""
+        """Return the microphone's sound `near` without the echo of `far`, the loudspeaker's sound at the same time.
+
+        Both are PCM of `FRAME` samples at `IN_RATE`.
+        """
         out = ctypes.create_string_buffer(2 * FRAME)
         self._library.speex_echo_cancellation(self._echo, near, far, out)
         self._library.speex_preprocess_run(self._after, out)

@@ -44,7 +44,8 @@ OFTEN, SELDOM = 2, 8
 """The two sounds are compared once in `OFTEN` frames until the first decision, and once in `SELDOM` frames after it. A
 comparison takes milliseconds."""
 GONE = 250
-"""The same as `DOUBTFUL`, but for a line that has had an echo (5 s). A person may have spoken louder than the echo."""
+"""The same as `DOUBTFUL`, but for a line that has had an echo (5 s). The number is greater, because a person may
+speak so loudly that no echo is found."""
 
 
 class Leak:
@@ -100,7 +101,7 @@ class Leak:
             self.echoes, self._limit = False, 0
 
     def hides(self, near: Samples) -> bool:
-        """Return whether a chunk of the microphone's cleaned sound may come from the loudspeaker. Learn from it."""
+        """Return whether a chunk of the microphone's cleaned sound may come from the loudspeaker. Adapt `share`."""
         far = max(self._far, default=0.0)
         if far < SILENT or not self.possible:
             return False

@@ -54,7 +54,7 @@ def strength(near: NDArray[np.float32], far: NDArray[np.float32], delay: int) ->
 
     Args:
         near, far: As for `likeness`.
-        delay: The delay of the echo.
+        delay: The delay of the echo (samples), from `likeness`.
     """
     begin, count = FAR - NEAR - delay, min(NEAR, NEAR + delay)
     x, y = _spectra(far[begin : begin + count]), _spectra(near[:count])

@@ -57,6 +57,8 @@ def whisper_models() -> Iterator[tuple[str, Path]]:
 def fetch_whisper(name: str, progress: Callable[[str], None]) -> Path:
     """Download the faster-whisper model `name` (``base``, ``small.en`` or a repository) into the user's folder.
 
+    Before the download, the function calls `progress` with a sentence about it.
+
     Raises:
         PlatformError: The package is missing, the name is unknown, or the download fails.
     """

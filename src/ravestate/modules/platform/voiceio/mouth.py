@@ -110,7 +110,7 @@ class Mouth:
         self.silent_since: float | None = None
         """The time at which `hold` stopped the speech; None if the speech is not held."""
         self._queue: list[_Queued] = []
-        self._heard = 0  # how many characters the user had heard at the last `release`, which repeats the cut word
+        self._heard = 0  # how many characters the user had heard before the last `release` repeated the cut word
         self._end = 0.0
         self._held_at: float | None = None
         self._released = asyncio.Event()

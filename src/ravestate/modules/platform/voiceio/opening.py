@@ -135,7 +135,11 @@ def is_file(name: str) -> bool:
 
 
 async def open_line(settings: Settings) -> Line:
-    """Open a line to the files or devices that the settings name. The source may be a file, and the sink a device."""
+    """Open a line to the files or devices that the settings name. The source may be a file, and the sink a device.
+
+    Raises:
+        PlatformError: A file or a device cannot be opened.
+    """
     source, sink = _file(settings.source), _file(settings.sink)
     by_clock = sink is not None or not settings.sink
     files = await asyncio.to_thread(WavLine, source, sink) if source or by_clock else None

@@ -25,7 +25,8 @@ LASTING = 15
 """A change of voice within speech needs this many voiced frames on each side. One person's pitch jumps for a shorter
 time."""
 AGREE = 0.9
-"""On each side of a change, at least this share of the pitches must be on the same side of the threshold."""
+"""At a change of voice, a threshold separates two groups of pitches: the earlier and the later ones. At least this share
+of each group must be on its side. The threshold is halfway between the two medians (in logarithms)."""
 SOFT = 500
 """A frame below this level counts as silence."""
 _SHORTEST, _LONGEST = int(IN_RATE / HIGHEST), int(IN_RATE / LOWEST)
@@ -35,7 +36,7 @@ _SIZE = 1 << (NEEDED + FRAME).bit_length()
 
 
 def pitches(sound: Samples, step: int = FRAME) -> list[float | None]:
-    """Return the pitch (Hz) at each `step` of a sound (16 kHz); None at steps without a voice."""
+    """Return the pitch (Hz) at every `step` samples of a sound (16 kHz); None where there is no voice."""
     return [pitch(sound[at : at + NEEDED]) for at in range(0, len(sound) - NEEDED + 1, step)]
 
 
@@ -71,8 +72,8 @@ def is_another(first: Sequence[float | None], second: Sequence[float | None]) ->
 def change(found: Sequence[float | None]) -> int | None:
     """Return the index in a sequence of pitches at which another person begins; None if only one person speaks.
 
-    The pitch of one person also jumps, but seldom for long. So nearly all pitches before the index must be on one side
-    of the threshold, and nearly all later ones on the other side.
+    The pitch of one person also jumps, but seldom for long. So nearly all pitches before the index must be below
+    a threshold, and nearly all later ones above it, or the reverse (`AGREE`).
     """
     places = [place for place, each in enumerate(found) if each is not None]
     logs = np.log(np.array(_voiced(found), np.float64))

@@ -98,11 +98,12 @@ class Recogniser:
         Args:
             pcm: The sound.
             partial: Whether the sound is the beginning of an utterance, for a caption. This is quicker, but less exact.
-            unwanted: An event that another thread sets if the words are no longer needed. It stops the next pieces.
+            unwanted: An event that another thread sets if the words are no longer needed. Then the
+                recogniser skips the rest of the pieces.
 
         Raises:
-            PlatformError: The recogniser fails, or does not answer in time, in two attempts. Or the words are no longer
-                needed.
+            PlatformError: The recogniser fails, or does not answer in time, in two attempts (for a caption, in one). Or
+                the words are no longer needed.
         """
         found: list[tuple[float, Recognised]] = []
         for piece in pieces(pcm, IN_RATE, LONGEST):

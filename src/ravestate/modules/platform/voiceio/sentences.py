@@ -37,7 +37,7 @@ def sentences(text: str, begin: int = 0, *, whole: bool) -> Iterator[tuple[int, 
 
 
 def speakable(text: str) -> str:
-    """Return `text` with spaces in place of emoji and marks, so that positions stay the same.
+    """Return `text` with spaces in place of emoji and Markdown's marks, so that positions stay the same.
 
     If the text has no words, return an empty text.
     """

@@ -40,7 +40,7 @@ class Synthesiser:
     """The voice that the settings name. All methods block and are thread-safe.
 
     A voice varies at random from sentence to sentence. So a repeated conversation sounds the same only if no other
-    conversation uses its process.
+    conversation uses the voice's process.
 
     Args:
         settings: The settings of voiceio.
@@ -79,7 +79,7 @@ class Synthesiser:
         self._process.start()
 
     def speak(self, text: str, prosody: Prosody | None = None) -> Spoken:
-        """Return a text as sound.
+        """Return a text as sound. `prosody` is the manner of speech; None is the voice's normal manner.
 
         Raises:
             PlatformError: The program fails, or does not answer in time.

@@ -1,4 +1,7 @@
-"""Decide when the user's turn is over, from its melody, its words, and the silence after it."""
+"""Decide when the user's turn is over, from its melody, its words, and the silence after it.
+
+The melody is the rise and fall of the voice.
+"""
 
 from __future__ import annotations
 
@@ -19,12 +22,12 @@ WINDOW = 8.0
 """The melody model hears this many seconds at the end of a turn."""
 
 UNFINISHED = 0.3
-"""If the melody's probability is below this share of the setting `complete`, the user wants to say more, whatever the
-words are."""
+"""If the probability of a complete melody is below this share of the setting `complete`, the user wants to say more,
+whatever the words are."""
 
 ANOTHER = 0.03
-"""A sentence does not end after a word such as *my*. If the candidates of this kind have at least this probability
-together, it is doubtful whether the turn is over."""
+"""The recogniser's candidates for the last word may include words that seldom end a sentence, such as *my*. If these
+have at least this probability together, it is doubtful whether the turn is over."""
 UNCLEAR = 0.3
 """If no candidate has this probability, the last word is unclear, for example because it was cut off."""
 
@@ -114,7 +117,7 @@ def completeness(text: str, language: str = "en") -> Literal["open", "doubtful",
 
 
 def _may_go_on(text: str, last: Mapping[str, float], language: str) -> bool:
-    """Return whether the last word is unclear, or may be a word that cannot end the sentence.
+    """Return whether the last word is unclear, or may be a different word that seldom ends a sentence.
 
     A recogniser has learnt from whole sentences. So it may hear "a photograph of mine" if the user says "a photograph
     of my", and pauses.

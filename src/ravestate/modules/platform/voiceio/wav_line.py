@@ -17,7 +17,9 @@ BLOCK = 0.02
 
 
 class WavLine:
-    """A line whose microphone plays a recording in the time of the event loop, which may be virtual, and then silence.
+    """A line whose microphone plays a recording, and then silence.
+
+    The line keeps the time of the event loop, which may be virtual.
 
     Args:
         source: The recording, in any usual format; None for silence.

@@ -32,8 +32,9 @@ class Access:
     """Checks each request before the server answers it.
 
     A page that only this machine can reach needs no token, so any site in this machine's browser could talk to it. Two
-    checks prevent that. Against DNS rebinding, the server answers only to names of this machine. And it accepts only
-    requests from its own origin and from the origins in the settings. All methods expect header names in lower case.
+    checks prevent that. Against DNS rebinding, the server answers only to the names of this machine and of the origins
+    in the settings. And it accepts requests of web sites only from its own origin and from the origins in the settings.
+    All methods expect header names in lower case.
     """
 
     def __init__(self, settings: Settings) -> None:

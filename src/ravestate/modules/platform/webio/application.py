@@ -38,7 +38,10 @@ log = logging.getLogger("ravestate.webio")
 
 
 def make_app(agent: Agent, routes: Iterable[BaseRoute] = (), inside: str | None = None) -> Starlette:
-    """Return the application of `webio.app`, with ``app.state.sessions`` and ``app.state.access``."""
+    """Return the application of `webio.app`, with ``app.state.sessions`` and ``app.state.access``.
+
+    For the arguments and errors, see `webio.app`.
+    """
     settings = _settings_of(agent)
     access = Access(settings)
     sessions = Sessions(agent, limit=settings.sessions, keep=settings.keep)

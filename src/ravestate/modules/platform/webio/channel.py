@@ -43,7 +43,11 @@ class Channel:
                 await self._socket.close(CLOSING_CODES.get(error.code, CLOSING_CODES["malformed"]), error.code)
 
     async def first(self, expected: str) -> str | bytes:
-        """Return the client's first frame. `expected` is an example of such a frame, for the error message."""
+        """Return the client's first frame. `expected` is an example of such a frame, for the error message.
+
+        Raises:
+            ProtocolError: No frame comes within `SILENT` seconds, or the frame is too large.
+        """
         try:
             async with asyncio.timeout(SILENT):
                 return await self.receive()
@@ -56,7 +60,7 @@ class Channel:
         if message["type"] == "websocket.disconnect":
             raise WebSocketDisconnect(message.get("code", 1006))
         text: str | bytes = message.get("text") or message.get("bytes") or ""
-        if len(text) > LONGEST:  # most servers refuse such frames before this line
+        if len(text) > LONGEST:  # most servers themselves refuse such frames
             raise ProtocolError("too-large", f"a frame has at most {LONGEST:,} bytes, not {len(text):,}")
         return text
 
@@ -69,7 +73,11 @@ class Channel:
         await self._socket.send_bytes(bytes(sound))
 
     def reply(self, text: str) -> None:
-        """Queue a frame. The writing task later calls `send_replies`, which sends it."""
+        """Queue a frame. The writing task later calls `send_replies`, which sends it.
+
+        Raises:
+            WebSocketDisconnect: The queue is full, because the client does not read.
+        """
         if len(self._replies) >= self._most:
             raise WebSocketDisconnect(1008, "the client does not read")
         self._replies.append(text)

@@ -33,7 +33,7 @@ REPORTS_BURST, REPORTS_RATE = 40, 20.0
 PICTURES_BURST, PICTURES_RATE = 20, 20.0
 """How many pictures a client may send in a burst, and per second after it. The server delays further pictures."""
 
-REPLIES = 32  # the maximum number of replies to a client that wait to be sent
+REPLIES = 32  # the maximum number of unsent replies to a client
 
 HELLO = f'{{"type": "hello", "v": {VERSION}}}'
 
@@ -67,7 +67,7 @@ class Connection:
         self._stream: object = None  # the line and the stream of the last `Flush` to the client
         self._listens: object = None  # the line of the last `Listening` to the client
         self._taken: str | None = None  # why this window has lost the line, if the client does not know it yet
-        self._announced: int | None = None  # the number of the picture in the next binary frame, from its `Picture`
+        self._announced: int | None = None  # the number of the last `Picture`, if its binary frame is still to come
         self._look: object = None  # the camera and the number of the last `Look` to the client
         self._faces: tuple[frames.Face, ...] = ()  # the faces of the last `Faces` to the client
         self._unseen: str | None = None  # why this window has lost the camera, if the client does not know it yet

@@ -217,7 +217,7 @@ class Paused:
 
 @dataclass(frozen=True, slots=True)
 class Caption:
-    """The words so far of an utterance that the visitor is still speaking. Empty after it has become a `Message`."""
+    """The words so far of an utterance that the visitor is still speaking; empty once the utterance is a `Message`."""
 
     text: Text
     type: Literal["caption"] = "caption"
@@ -251,7 +251,7 @@ class Flush:
 
 @dataclass(frozen=True, slots=True)
 class Listening:
-    """The agent has begun to listen to this window's microphone. It may have had to load its models first."""
+    """The agent has begun to listen to this window's microphone. Before that, the agent may load its models."""
 
     type: Literal["listening"] = "listening"
 

@@ -53,7 +53,7 @@ class LimitedHTTP(H11Protocol):
         self._per_address = per_address
         self._most = most
         self._received = 0  # how many bytes came since the last check
-        self._waited: object = None  # the request for which the last check waited
+        self._waited: object = None  # the request (or None) at the last check, if the server then waited for the client
         self._late: tuple[object, float] = (None, 0.0)  # a request, and by how many bytes it is behind the lowest rate
 
     def connection_made(self, transport: asyncio.Transport) -> None:  # type: ignore[override]  # as in the base class

@@ -71,4 +71,4 @@ class Settings(rs.Settings):
 module = rs.Module("webio", requires=(rawio, interloc), settings=Settings)
 
 page: rs.Slot[Session | None] = module.slot("page", None)
-"""The conversation on the page that this context belongs to; None for a context without a page."""
+"""This context's conversation with a visitor of the page; None for a context without a page."""

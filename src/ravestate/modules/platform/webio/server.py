@@ -6,6 +6,7 @@ import asyncio
 import contextlib
 import errno
 import functools
+import gc
 import socket
 import sys
 from collections.abc import Callable, Generator, Iterable, Mapping
@@ -28,7 +29,6 @@ if TYPE_CHECKING:
     from ravestate.runtime.agent import Agent
 
     from .names import Settings
-import gc
 
 SPARE = 128  # the number of open files that the server leaves to the rest of the process
 BACKLOG = 256  # how many connections the system accepts before the server takes them

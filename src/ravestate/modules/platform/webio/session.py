@@ -28,7 +28,7 @@ if TYPE_CHECKING:
     from ravestate.runtime.context import Context
 
 REMEMBERED = 512  # the number of message ids that a session remembers, to ignore repeated messages
-GRACE = 0.3  # after the visitor's words, the page waits this many seconds to show that the agent is working
+GRACE = 0.3  # after the visitor's words, the page waits this many seconds before it shows that the agent is working
 RECENT = 5  # `mark_heard` searches this many of the agent's newest messages
 LONGEST_CAPTION = 1000  # the maximum number of characters in a caption
 WORD = re.compile(r"\S+")
@@ -179,7 +179,7 @@ class Session:
         return True
 
     def note_input(self, text: str) -> None:
-        """Add an input of the agent to the history, unless `hear` has already added it."""
+        """Add the words in `rawio.input` to the history, unless `hear` has already added them."""
         if text in self._put:
             while self._put.popleft() != text:
                 pass  # a later input in the same instant has replaced these words

@@ -67,7 +67,11 @@ class Sessions:
         return session
 
     def enter(self, session: Session, onlooker: Onlooker) -> None:
-        """Add an onlooker, for example a window, to a conversation. Refuse it if the conversation has too many."""
+        """Add an onlooker, for example a window, to a conversation.
+
+        Raises:
+            ProtocolError: The conversation has `ONLOOKERS` onlookers already.
+        """
         if len(session.onlookers) >= ONLOOKERS:
             raise ProtocolError("full", f"{ONLOOKERS} windows show this conversation already: close one of them")
         session.onlookers.add(onlooker)
@@ -101,7 +105,7 @@ class Sessions:
         self._timers[session] = asyncio.get_running_loop().call_later(self._keep, self.leave, session, Ending.ABANDONED)
 
     async def _make_room(self) -> None:
-        """End the conversation that has had no window for the longest time. Prefer visitors who never spoke."""
+        """End the conversation that has had no window for the longest time. Prefer one whose visitor never spoke."""
         abandoned = min(self._timers, key=lambda session: session.spoken, default=None)
         if abandoned is not None:
             task = self._tasks[abandoned]

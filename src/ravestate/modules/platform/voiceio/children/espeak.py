@@ -7,6 +7,7 @@ import ctypes
 import ctypes.util
 from typing import Any
 
+# The values of constants in espeak-ng's speak_lib.h.
 SYNCHRONOUS, UTF8, CHARACTERS = 2, 1, 1
 RATE, PITCH, RANGE = 1, 3, 4  # numbers of parameters
 WORD, END = 1, 0  # kinds of events

@@ -118,7 +118,10 @@ def load(config: dict[str, Any]) -> Any:
 
 
 def without_repetition(words: list[str], *, at_limit: bool) -> int:
-    """Return how many words come before the repetition of a phrase. If nothing is repeated, count all words."""
+    """Return how many words come before the repetition of a phrase. If nothing is repeated, count all words.
+
+    `at_limit` is whether the model wrote as many tokens as it may. Then even a short or partial repetition counts.
+    """
     for length in range(1 if at_limit else PHRASE, len(words)):
         if all(words[at] == words[at - length] for at in range(length, len(words))):
             return length if at_limit or len(words) >= 2 * length else len(words)
