@@ -70,7 +70,7 @@ class Direction(Port):
     def radians(self, message: Any) -> float | None:
         """Return the direction in a message (radians from -pi to pi; 0: straight ahead, positive: left).
 
-        Return None if the sensor has sent NaN or infinity, because it then has no direction.
+        Return None for NaN and infinity: with these, a sensor says that it has no direction.
         """
         value = float(self.unpack(message))
         if not math.isfinite(value):

@@ -97,7 +97,7 @@ class Goal:
     task: asyncio.Task[Any] | None = None
 
     def follow(self, task: asyncio.Task[Any]) -> None:
-        """Pass on the end of the task that sends the goal, however it ends."""
+        """Pass the outcome of the task that sends the goal to the sender of the goal."""
         self.task = task
         task.add_done_callback(self._end)
 
@@ -174,7 +174,7 @@ class Declarations:
         slot = self._slot(module, name, TopicSlot, binding, keep="latest" if keep == "latest" else "all", input=True)
         node = self.node
 
-        @module_of(module).rule(
+        @as_module(module).rule(
             when=node.changed.max_age(None).detached(),
             reads=node,
             writes=slot,
@@ -226,7 +226,7 @@ class Declarations:
         slot = self._slot(module, name, TopicSlot, Binding(self.version, "publisher", topic, type, options))
         node = self.node
 
-        @module_of(module).rule(
+        @as_module(module).rule(
             when=slot.changed.max_age(None).detached(), reads=node, background=True, name=f"{name}_publish"
         )
         async def publish(ctx: rs.RuleContext) -> rs.Resign | None:
@@ -256,7 +256,7 @@ class Declarations:
         slot = self._slot(module, name, ServiceSlot, binding)
         node = self.node
 
-        @module_of(module).rule(
+        @as_module(module).rule(
             when=slot.requested.max_age(None), reads=node, emits=(slot.changed, slot.failed), name=f"{name}_call"
         )
         async def call(ctx: rs.RuleContext) -> rs.Resign | None:
@@ -305,7 +305,7 @@ class Declarations:
         slot = self._slot(module, name, ActionSlot, binding)
         node = self.node
 
-        @module_of(module).rule(
+        @as_module(module).rule(
             when=slot.requested.max_age(None),
             reads=node,
             emits=(slot.changed, slot.failed, slot.feedback),
@@ -352,7 +352,7 @@ class Declarations:
             raise DeclarationError(str(error)) from None
 
     def _slot(self, module: Any, name: str, cls: type[Any], binding: Binding, **options: Any) -> Any:
-        owner = module_of(module)
+        owner = as_module(module)
         check_name(name, f"{owner.name}.slot")
         slot = cls(f"{owner.name}:{name}", None, origin=place_of_call(), always=True, **options)
         slot.binding = binding
@@ -391,11 +391,6 @@ async def perform(ctx: rs.RuleContext, slot: ActionSlot, goal: Any) -> Any:
 def _failure(task: asyncio.Task[Any]) -> str:
     """Return why a goal has no result; empty if it has one."""
     return "the goal was cancelled" if task.cancelled() else str(task.exception() or "")
-
-
-def module_of(module: Any) -> rs.Module:
-    """Return the module for an argument: the module itself, or the package that holds it."""
-    return as_module(module)
 
 
 def bind_all(ctx: rs.RuleContext, node: Node, version: int) -> None:
