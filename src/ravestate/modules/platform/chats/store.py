@@ -131,7 +131,7 @@ class Store:
             yield
             self._db.execute("COMMIT")
         except BaseException:
-            if self._db.in_transaction:  # SQLite itself may have rolled it back
+            if self._db.in_transaction:  # SQLite itself may have rolled the transaction back
                 self._db.execute("ROLLBACK")
             raise
 

@@ -95,14 +95,14 @@ class Axis(Port):
 
 
 class Faces(Port):
-    """The expressions of the face."""
+    """The topic or service that shows an expression on the face."""
 
     faces: dict[str, str]
     """Ravestate's name of an expression → the robot's name."""
 
 
 class Gestures(Port):
-    """The gestures of the robot."""
+    """The topic or service that makes the robot perform a gesture."""
 
     gestures: dict[str, str]
     """Ravestate's name of a gesture → the robot's name."""

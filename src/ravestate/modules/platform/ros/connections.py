@@ -36,7 +36,7 @@ class Connections:
     """The connections that the bridge has made and then passed to the agent.
 
     Args:
-        hang_up: A function to call with the number of a connection that has ended. It tells the bridge.
+        hang_up: A function that tells the bridge the number of a connection that has ended.
         warn: A function to call with a sentence for the log.
     """
 

@@ -1,4 +1,4 @@
-"""Actions of ROS 1. An action consists of five topics (the protocol of actionlib), so it needs no package."""
+"""Actions of ROS 1. An action consists of five topics (the protocol of actionlib), so the agent needs no package for it."""
 
 from __future__ import annotations
 

@@ -152,11 +152,11 @@ class Declarations:
             name: The slot's name.
             topic: The topic, for example ``/chat``. Relative names and ``~private`` names are allowed.
             type: The type of the topic's messages, for example ``std_msgs/String``.
-            keep: With ``latest``, a newer message replaces a waiting one. With ``all``, the slot gets every message, unless
+            keep: With ``latest``, a newer message replaces a waiting message. With ``all``, the slot gets every message, unless
                 `rate` is given or a queue overflows.
-            rate: The maximum number of messages per second. The slot gets the newest message of each interval.
+            rate: The maximum number of messages per second. The slot gets the newest message of each interval (1 / `rate` seconds).
             qos: ROS 2: ``sensor_data``, ``latched``, or a dict of ``depth``, ``reliability``, ``durability``.
-            latch: ROS 2: whether to get the last message of a publisher that latches.
+            latch: ROS 2: whether to get the last message that a publisher has kept for late subscribers.
 
         Raises:
             DeclarationError: An argument is wrong.
@@ -260,7 +260,7 @@ class Declarations:
             when=slot.requested.max_age(None), reads=node, emits=(slot.changed, slot.failed), name=f"{name}_call"
         )
         async def call(ctx: rs.RuleContext) -> rs.Resign | None:
-            """Call the service, and raise its answer."""
+            """Call the service, and raise the signal of its answer."""
             if (here := ctx[node]) is None:
                 return rs.Resign("there is no node")
             await here.prepare()
@@ -313,7 +313,7 @@ class Declarations:
             name=f"{name}_act",
         )
         async def act(ctx: rs.RuleContext) -> rs.Resign | None:
-            """Send the goal, and raise its feedback and its result."""
+            """Send the goal, and raise the signals of its feedback and its result."""
             asked = ctx.payload(slot.requested)
             if (here := ctx[node]) is None:
                 if isinstance(asked, Goal):

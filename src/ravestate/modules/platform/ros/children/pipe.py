@@ -31,6 +31,9 @@ SUBSCRIBER, PUBLISHER, HANGUP = 16, 17, 18
 The agent sends OPEN, BIND, UNBIND, ACK, CANCEL, ASK, CLOSE and HANGUP. The bridge sends READY, FEEDBACK, TOLD, NOTE,
 SUBSCRIBER and PUBLISHER. Both send MESSAGE, CALL, ANSWER and FAULT. SUBSCRIBER and PUBLISHER come with a socket, which
 is the connection with another node.
+
+BIND opens a channel, and UNBIND closes it. ACK allows the next message of a channel. TOLD answers the question ASK about
+the network. NOTE is a text for the log. HANGUP says that a connection has ended.
 """
 
 

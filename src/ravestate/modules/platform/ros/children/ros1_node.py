@@ -207,7 +207,7 @@ class Ros1Node:
         self._pipe.hand_over(connection.socket, kind, number, what)
 
     def hang_up(self, number):
-        """Forget a connection that the other node has closed."""
+        """Close and forget a connection that the agent or the other node has ended."""
         self._connections.pop(number).close()
 
     def _service_class(self, type_, md5):
