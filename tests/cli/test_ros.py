@@ -83,7 +83,7 @@ def test_the_action_check_lists_the_bound_slots_and_says_how_to_fix_faults(
         "type='std_msgs/String'",
         "ok       agent:lamp    service of /lamp (std_srvs/SetBool): 1 server",
         "FAULT    agent:lost    publisher of /lost (std_msgs/String): no subscribers; this type is used by /chat: "
-        "set `remap`, or write that name",
+        "set `remap`, or write the name that you mean",
         "FAULT    agent:own     publisher of /own (own_msgs/Thing): there is no definition of own_msgs/msg/Thing: install "
         "its package, or name its file in ros2.definitions",
     ]

@@ -253,7 +253,7 @@ def test_two_nodes_exchange_messages_over_dds_without_ros(ros2_network: Network)
             await until(lambda: got, lambda: own.publish({"value": 7, "unit": "warm"}))
             assert (got[0].value, got[0].unit) == (7, "warm")
             client = one.client("/lamp", "std_srvs/SetBool", timeout=5.0)
-            with pytest.raises(PlatformError, match=r"DDS alone .* carries topics"):
+            with pytest.raises(PlatformError, match=r"DDS alone .* carries only topics"):
                 await client.call(True)
 
     ros2_network.run(main)

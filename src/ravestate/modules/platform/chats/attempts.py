@@ -20,7 +20,7 @@ def back_off(attempt: int) -> float:
 
 
 class Attempts:
-    """Counts the failures of an operation in a row, and waits after each failure: each time about twice as long.
+    """Counts the consecutive failures of an operation. Waits after each failure: each time about twice as long.
 
     Args:
         log: The logger of the platform.
@@ -33,7 +33,12 @@ class Attempts:
         self._failures = 0
 
     async def fail(self, why: object, wait: float = 0.0) -> None:
-        """Log a failure, and wait before the next attempt: for `wait` seconds if the messenger asks for a wait."""
+        """Log a failure, and wait before the next attempt.
+
+        Args:
+            why: The reason, for the log.
+            wait: The wait that the messenger asks for (seconds). If it is 0, the wait comes from `back_off`.
+        """
         level = logging.WARNING if self._failures == TOLD else logging.INFO
         self._log.log(level, "%s: %s; trying again", self._what, why)
         seconds = wait or back_off(self._failures)

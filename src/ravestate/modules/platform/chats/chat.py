@@ -65,7 +65,7 @@ class Chat:
         self._open: list[Entry] = []  # messages that the agent has heard, and may still answer
         self._said: list[Answer] = []  # answers that are not in the store yet
         self._repeated: Counter[object] = Counter()  # answers from before a crash, which the store has kept
-        self._replaceable: dict[int, list[str]] = {}  # for each edit: earlier answers without a replacement
+        self._replaceable: dict[int, list[str]] = {}  # an edit's number → ids of answers to replace
         self._draft = Draft(id)
         self._state: Literal["open", "leaving", "gone"] = "open"
         self._mute = False  # whether the agent's words are dropped
@@ -106,7 +106,7 @@ class Chat:
         self._hearing, self._open, self._said = None, [], []
 
     async def live(self) -> None:
-        """Hold conversations until no messages are left."""
+        """Hold one conversation after another, until no message waits."""
         while self._waiting and not self._room.closing:
             self._state = "open"
             try:
@@ -224,7 +224,7 @@ class Chat:
         if people.present(context, name, person):
             return False
         new = not self._room.store.knows(self.id, person)
-        # Greet nobody twice: mute the greeting. This would also mute answers to others, so wait for the answers first.
+        # A second greeting must be mute. But a mute chat drops answers to others, too, so wait for these answers first.
         self._mute = not new and await self._answered(FAREWELL)
         await people.welcome(context, name, person, self._room.log, entry)
         with contextlib.suppress(TimeoutError):
@@ -335,7 +335,7 @@ class Chat:
             self._say(Outgoing(key="", chat=self.id, text=part), cause, first=False)
 
     def _longest(self, cause: Entry | None) -> int:
-        """Return the maximum number of characters in an answer to `cause`. The answer to a voice note is a voice note."""
+        """Return the maximum number of characters in an answer to `cause`. An answer to a voice note is a caption."""
         carrier = self._room.carrier
         return carrier.longest_caption if cause is not None and cause.message.kind == "voice" else carrier.longest
 
@@ -397,9 +397,9 @@ class Chat:
         self._room.make_room()
 
     def _deletions(self, entry: Entry) -> list[Answer]:
-        """Return orders to delete the earlier answers that the answers to an edit have not replaced.
+        """Return orders to delete those earlier answers that the answers to an edit have not replaced.
 
-        If the edit has no answer, return none.
+        If the edit has no answer, return no orders.
         """
         left = self._replaceable.get(entry.n)
         if not left or not (any(each.cause == entry.n for each in self._said) or self._room.store.recorded(entry.n)):
@@ -444,5 +444,5 @@ def _cause(origin: object) -> Entry | None:
 
 
 def _content(cause: int | None, message: Outgoing) -> object:
-    """Return the part of a message by which the chat recognises it if the agent repeats it after a crash."""
+    """Return the part of a message by which the chat recognises a repetition after a crash."""
     return cause, message.text, message.data

@@ -16,7 +16,7 @@ if TYPE_CHECKING:
     from .store import Entry
 
 SLOW = 0.5
-"""The chat shows that the agent is writing after the agent has worked for this many seconds."""
+"""After the agent has worked for this many seconds, the chat shows that the agent is writing."""
 
 SHOWN = 4.0
 """The sign that the agent is writing is repeated after this many seconds. Messengers show it for five seconds."""
@@ -49,9 +49,9 @@ class Draft:
         return self._texts.pop(cause, "")
 
     def cut_off(self) -> None:
-        """Note that the answers so far grow no more: the next piece begins a new answer.
+        """Note that no growing answer gets more pieces: the next piece begins a new answer.
 
-        The rule that ends a failed answer may run a moment later. So `take` returns the words until the next cut.
+        The words stay until the next `cut_off`, because the rule that sends them (`Chat.fall_silent`) may run later.
         """
         for cause in self._cut:
             self._texts.pop(cause, None)

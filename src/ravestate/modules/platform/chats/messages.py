@@ -120,7 +120,7 @@ class Carrier(Protocol):
     """The maximum number of messages per second, over all chats."""
 
     async def send(self, message: Outgoing, again: bool) -> str:
-        """Send a message, and return its id on the messenger. For an ``edit``, this is the id for the next edit.
+        """Send a message, and return its id on the messenger. For an ``edit``, return the id to name in the next edit.
 
         Args:
             message: The message.
@@ -132,7 +132,10 @@ class Carrier(Protocol):
         ...
 
     def trace(self, chat: str) -> str:
-        """Return a text that helps a later `send` to find the message, if this attempt ends without an answer."""
+        """Return a text to store before the first attempt to send a message to a chat.
+
+        If that attempt ends without an answer, the text helps a later `send` to find out whether the message arrived.
+        """
         ...
 
     async def fetch(self, file: str) -> bytes:
@@ -144,7 +147,7 @@ class Carrier(Protocol):
 
         Args:
             chat: The id of the chat.
-            words: The answer so far, or an empty text. A carrier may show the words if this leaves no message behind.
+            words: The answer so far, or an empty text. A carrier may show the words only if they do not stay in the chat.
 
         Raises:
             DeliveryError: The request has failed.

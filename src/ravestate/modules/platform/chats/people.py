@@ -18,13 +18,13 @@ if TYPE_CHECKING:
 
 MEMORY = "ontology:memory"
 PATIENCE = 30.0
-"""The maximum number of seconds to wait for memory. After that, the conversation begins without it."""
+"""The maximum number of seconds to wait for memory. After that, the conversation begins without memory."""
 
 
 async def welcome(context: Context, platform: str, person: Person, log: logging.Logger, origin: object) -> None:
     """Add a person to the present users, with the name that memory has for their account.
 
-    The rules that this leads to, such as a greeting, get `origin` as ``ctx.origin``.
+    The rules that react to the new user, such as a greeting, get `origin` as ``ctx.origin``.
     """
     name: str | None = person.name
     try:
@@ -66,7 +66,7 @@ def present(context: Context, platform: str, person: Person) -> bool:
 
 
 async def forget(context: Context, platform: str, person: Person) -> None:
-    """Remove a person, and all nodes that only they need, from memory. Then notify the other modules.
+    """Remove a person, and the nodes that only they need (see `Graph.forget`), from memory. Raise ``interloc.forgotten``.
 
     Raises:
         RavestateError: Memory failed.

@@ -40,7 +40,7 @@ class Room:
 
     Args:
         agent: The agent, which makes a context for each chat.
-        name: The name of the platform's module. `connect` has declared its rules, and it has `ChatSettings`.
+        name: The name of the platform's module. The module has the rules of `connect`, and the settings `ChatSettings`.
         carrier: The connection to the messenger.
         account: The agent's own id on the messenger. Each account has its own file.
 
@@ -98,7 +98,7 @@ class Room:
             self.store.close()
 
     def read(self, events: Iterable[E], read: Callable[[E], Incoming | None]) -> list[Incoming]:
-        """Return the messages in the messenger's events that `admits` accepts, and all messages of the kind ``left``.
+        """Read the messenger's events. Return the messages that `admits` accepts, and those of the kind ``left``.
 
         Args:
             events: The events.
@@ -117,7 +117,7 @@ class Room:
         return found
 
     def admits(self, message: Incoming) -> bool:
-        """Return whether a message's sender or chat is in `allow`; log a refusal once for each sender."""
+        """Return whether the setting `allow` permits an answer to a message. Log a refusal once for each sender."""
         person = message.person
         if self._settings.allows(person.id, message.chat, *message.aliases):
             return True
@@ -125,7 +125,7 @@ class Room:
         return False
 
     def warn(self, concerned: str, what: str) -> None:
-        """Log a warning, but only once for each subject."""
+        """Log a sentence as a warning, but only once for each subject (`concerned`). `what` is the rest of the sentence."""
         if concerned not in self._warned:
             self._warned.add(concerned)
             self.log.warning("%s %s", concerned, what)
@@ -169,7 +169,7 @@ class Room:
         self.make_room()
 
     async def persist(self, operate: Callable[[], T]) -> T:
-        """Return the result of an operation of the store. If the disk is full, try again until it succeeds."""
+        """Return the result of an operation of the store. If the file cannot be written, try again until it can."""
         for attempt in itertools.count():
             try:
                 return operate()

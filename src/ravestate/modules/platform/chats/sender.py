@@ -19,7 +19,7 @@ SHOWN = 2.0
 """A message waits at most this many seconds for the end of a request that shows its draft."""
 
 BURST = 0.15
-"""After a pause, the turns of this many seconds come without a wait: at 25 turns per second, about 4 turns."""
+"""After a pause, the first turns need no wait: the turns that fit into this many seconds (about 4 at 25 per second)."""
 
 
 class Pace:
@@ -78,7 +78,8 @@ class Sender:
     async def show_work(self, chat: str, words: str) -> None:
         """Show in a chat that the agent is writing.
 
-        The next message waits until this request has ended, even if the caller is cancelled.
+        While an earlier request for the chat runs, do nothing. The next message waits until the request has ended, even if
+        the caller is cancelled.
 
         Raises:
             DeliveryError: The request has failed.
@@ -139,7 +140,7 @@ class Sender:
                 await attempts.fail(error, error.wait)
 
     def _is_elsewhere(self, chat: str, error: DeliveryError) -> bool:
-        """If the error says that the chat is closed or has a new id, report this. Return whether it says so."""
+        """Call `on_gone` or `on_moved` if an error says that the chat is closed or has a new id. Return whether it does."""
         if error.gone:
             self._on_gone(chat)
         elif error.moved:
@@ -159,7 +160,7 @@ class Sender:
         """Try to deliver an item once. Return the error if the attempt fails."""
         async with self._attempts:
             await self.pace.turn()
-            if (showing := self._showing.get(item.message.chat)) is not None:  # a draft that comes later would stay
+            if (showing := self._showing.get(item.message.chat)) is not None:  # a later draft would stay
                 await asyncio.wait((showing,), timeout=SHOWN)
             begun = item if item.begun else self._store.begin(item, self._carrier.trace(item.message.chat))
             try:

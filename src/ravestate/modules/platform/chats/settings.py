@@ -21,23 +21,23 @@ def _address(text: str) -> str:
 
 
 Address = Annotated[str, pydantic.AfterValidator(_address)]
-"""The address of a server, with ``http://`` or ``https://``. Every request to another text would fail."""
+"""The address of a server, with ``http://`` or ``https://``. Any other text is an error, before a request to it fails."""
 
 
 class ChatSettings(rs.Settings):
     """The settings of a platform with many chats: which people the agent answers, and when a chat rests."""
 
     allow: tuple[int | str, ...] = ()
-    """The people whom the agent answers: their ids or names, or ids of groups. If empty, it answers everybody."""
+    """The people whom the agent answers: their ids or names, or ids of groups. If empty, the agent answers everybody."""
     rest: float = pydantic.Field(600.0, gt=0, allow_inf_nan=False)
     """A chat rests after this many seconds of silence."""
     chats: int = pydantic.Field(1000, ge=1)
-    """The maximum number of chats that are awake at a time. Only busy chats may exceed this number."""
+    """The maximum number of chats that are awake at a time. Only chats with unanswered messages may exceed it."""
     path: Path | None = None
-    """The file with unanswered and undelivered messages. By default, each account has one in the user's data folder."""
+    """The file with unanswered and undelivered messages. By default, a file for each account in the user's data folder."""
 
     def allows(self, *names: object) -> bool:
-        """Return whether one of the sender's ids and names is in `allow`, or `allow` is empty."""
+        """Return whether `allow` is empty, or has one of these ids and names of a sender and a chat."""
         known = {_plain(name) for name in self.allow}
         return not known or any(_plain(name) in known for name in names if name)
 

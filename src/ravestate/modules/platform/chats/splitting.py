@@ -11,7 +11,7 @@ ENDS = (re.compile(r"\n\n"), re.compile(r"\n"), re.compile(r"(?<=[.!?…]) "), r
 def split(text: str, longest: int, *, first: int | None = None) -> list[str]:
     """Split a text into parts of at most `longest` characters, if possible between paragraphs, sentences or words.
 
-    The first part has at most `first` characters, if this is given.
+    If `first` is given, the first part has at most `first` characters.
 
     Example:
         >>> split("One two. Three four.", 12)

@@ -20,7 +20,7 @@ SEEN = 3 * 24 * 3600.0
 """How many seconds the store remembers the keys of messages. Messengers repeat a message for at most a day."""
 
 TRIES = 3
-"""The store drops a message after this many crashes while the agent handled it, because the message may cause them."""
+"""If the agent crashes this many times while it handles a message, the store drops the message as a likely cause."""
 
 PARTING = ("stop", "forget")
 """The commands after which the agent treats the person as new in the chat."""
@@ -131,7 +131,7 @@ class Store:
             yield
             self._db.execute("COMMIT")
         except BaseException:
-            if self._db.in_transaction:  # SQLite itself may have rolled it back
+            if self._db.in_transaction:  # SQLite itself may have rolled the transaction back
                 self._db.execute("ROLLBACK")
             raise
 
@@ -227,7 +227,10 @@ class Store:
         return [_outgoing(*row) for row in self._all("SELECT message, data, chat FROM outbox WHERE cause = ?", cause)]
 
     def alone(self, chat: str) -> list[Outgoing]:
-        """Return the messages that answer no message, but that the agent wrote while it had messages to answer."""
+        """Return the messages that the agent has written to a chat on its own initiative.
+
+        The store keeps a delivered message only while incoming messages of its chat are not done.
+        """
         query = "SELECT message, data, chat FROM outbox WHERE cause IS NULL AND chat = ?"
         return [_outgoing(*row) for row in self._all(query, chat)]
 
@@ -326,7 +329,7 @@ def _not_opened(path: Path, error: Exception) -> PlatformError:
     why = error.strerror if isinstance(error, OSError) else str(error)
     mend = "name another file in the messenger's setting path, or move this one away (its messages are then lost)"
     if getattr(error, "sqlite_errorname", "").startswith("SQLITE_BUSY"):
-        why, mend = "another agent uses it", "end that one first"
+        why, mend = "another agent uses it", "end that agent first"
     return PlatformError(f"the chats' file {path} cannot be opened: {why}: {mend}")
 
 

@@ -86,7 +86,7 @@ async def listen(
 
 
 class _Server(uvicorn.Server):
-    """A uvicorn server without signal handlers: the agent's runner has its own."""
+    """A uvicorn server without signal handlers, because the agent's runner has its own handlers."""
 
     @contextlib.contextmanager
     def capture_signals(self) -> Generator[None]:

@@ -39,7 +39,7 @@ POLL = 30_000  # if there are no events, the server holds a request for this man
 ANSWER = 20.0  # the maximum number of seconds to wait for the answer to a request
 PAGE = 100  # the maximum number of events of a room in one answer
 DEVICE = "RAVESTATE"  # always the same, so that the server recognises a message that is repeated after a restart
-JOINS = 12  # the agent stops trying to join a room after this many refusals: four to five minutes
+JOINS = 12  # after this many refusals (four to five minutes), the agent stops trying to join a room
 REFUSED = ("M_UNKNOWN_TOKEN", "M_MISSING_TOKEN", "M_FORBIDDEN", "M_USER_DEACTIVATED")
 FILTER: dict[str, Any] = {"presence": {"types": []}, "room": {"timeline": {"limit": PAGE}, "ephemeral": {"types": []}}}
 
@@ -170,7 +170,7 @@ class Inlet:
         """Return the events that the server left out of an answer because there were too many.
 
         Raises:
-            OSError: The server does not send these events now. The caller must not advance its position, so as to ask again.
+            OSError: The server does not send these events now. The caller must keep its position, and ask again.
         """
         found: list[Event] = []
         while start:
@@ -211,7 +211,7 @@ class Inlet:
             self._room.warn(room, f"is not joined: {', '.join(inviters)} is not in matrixio.allow")
 
     def _accept(self, room: str) -> None:
-        """Join a room in a task. The server reports an invitation only once, so keep it until the agent has joined."""
+        """Join a room in a task. The server reports an invitation only once, so store it until the agent has joined."""
         if room not in self._joining:
             self._room.store.note("invited", json.dumps([*self._joining, room]))
             self._joining[room] = asyncio.create_task(self._join(room))

@@ -15,8 +15,8 @@ from nio.crypto import decrypt_attachment  # pyright: ignore[reportMissingTypeSt
 
 from ravestate.modules.platform.chats import DeliveryError, Outgoing, is_emoji
 
-GONE = ("M_FORBIDDEN", "M_NOT_FOUND")
-FINAL = ("M_TOO_LARGE", "M_BAD_JSON", "M_INVALID_PARAM", "M_UNRECOGNIZED")
+GONE = ("M_FORBIDDEN", "M_NOT_FOUND")  # the room is closed to the agent
+FINAL = ("M_TOO_LARGE", "M_BAD_JSON", "M_INVALID_PARAM", "M_UNRECOGNIZED")  # every further attempt would fail, too
 LOST = (aiohttp.ClientError, TimeoutError, asyncio.TimeoutError, OSError)
 """The failures of the connection. After most of them, the request may still have reached the server."""
 
@@ -26,7 +26,7 @@ WRITING = 5000  # a room shows for this many milliseconds that the agent is writ
 
 
 class MatrixCarrier:
-    """Sends messages from an account; see `Carrier`. A homeserver ignores a message whose id it knows."""
+    """Sends messages from an account; see `Carrier`. A homeserver ignores a repeated `Outgoing.key`."""
 
     longest = longest_caption = 16_000  # the limit of an event is 64 kB
     rate = 50.0

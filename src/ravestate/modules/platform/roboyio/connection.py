@@ -16,7 +16,7 @@ from .robot import Axis, Port, Robot
 QUALITY = quality(None, depth=10, latch=False)
 LATCHED = quality("latched", depth=1, latch=True)
 STEP = 0.1
-"""The seconds between two commands to an axis with speed commands. Without further commands, a robot's base stops."""
+"""The seconds between two commands to an axis with speed commands (see `Axis.speed`): a base stops without commands."""
 NEAR = 0.03
 """An axis with speed commands has arrived if it is at most this far from its target (radians)."""
 NOD = ((0.0, -0.18), (0.25, 0.1), (0.25, -0.12), (0.25, 0.0))
@@ -88,7 +88,7 @@ class Connection:
             self.node.subscribe(port.topic, port.type, take, latest=False, qos=QUALITY)
 
     async def say(self, text: str) -> None:
-        """Let the robot speak a text. Wait for the answer of a service; after a message to a topic, return immediately.
+        """Let the robot speak a text. If it speaks through a service, wait for the answer; through a topic, do not wait.
 
         Raises:
             PlatformError: The robot does not answer, or refuses to speak.
@@ -106,7 +106,7 @@ class Connection:
         await asyncio.gather(*(self._move(name, axis) for name, axis in self.robot.head.items()))
 
     async def perform(self, name: str) -> None:
-        """Perform a gesture: the robot's own gesture, or movements of the head."""
+        """Perform a gesture: the robot's own, or a nod or a shake with the head. Ignore a gesture that the robot lacks."""
         gesture = self.robot.gesture
         if gesture is not None and name in gesture.gestures:
             await self._send("gesture", gesture, gesture.gestures[name])

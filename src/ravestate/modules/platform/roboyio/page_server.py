@@ -1,4 +1,4 @@
-"""The stand-in robot's page: it shows the robot, and lets a visitor talk to it."""
+"""The stand-in robot's page: it shows the robot, and lets a visitor talk to the robot."""
 
 from __future__ import annotations
 
@@ -108,7 +108,7 @@ class PageServer:
             ValueError, TypeError, AttributeError, OverflowError, RecursionError
         ):  # ignore malformed frames
             told: Any = json.loads(said)
-            json.dumps(told, ensure_ascii=False).encode()  # raises for half of an emoji, which cannot be sent
+            json.dumps(told, ensure_ascii=False).encode()  # raises for half of an emoji (a lone surrogate)
             if isinstance(told.get("say"), str) and told["say"].strip():
                 self._robot.hear(told["say"].strip()[:LONGEST], float(told.get("direction", 0.0)))
             if isinstance(told.get("people"), list):

@@ -70,7 +70,7 @@ class Direction(Port):
     def radians(self, message: Any) -> float | None:
         """Return the direction in a message (radians from -pi to pi; 0: straight ahead, positive: left).
 
-        Return None if the sensor has sent NaN or infinity, because it then has no direction.
+        Return None for NaN and infinity: with these, a sensor says that it has no direction.
         """
         value = float(self.unpack(message))
         if not math.isfinite(value):
@@ -95,14 +95,14 @@ class Axis(Port):
 
 
 class Faces(Port):
-    """The expressions of the face."""
+    """The topic or service that shows an expression on the face."""
 
     faces: dict[str, str]
     """Ravestate's name of an expression → the robot's name."""
 
 
 class Gestures(Port):
-    """The gestures of the robot."""
+    """The topic or service that makes the robot perform a gesture."""
 
     gestures: dict[str, str]
     """Ravestate's name of a gesture → the robot's name."""

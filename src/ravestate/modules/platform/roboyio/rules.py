@@ -20,7 +20,7 @@ from .robot import load_robot
 THOUGHTFUL = Pose(yaw=0.25, pitch=0.2)
 """The gaze of a thinking robot."""
 _connected: WeakSet[Node] = WeakSet()
-"""The nodes that have a robot. The slot `body` does not suffice: two runs of `connect` may begin at the same time."""
+"""The nodes with a robot's connection. The slot `body` does not suffice: two runs of `connect` may begin together."""
 THINKS_AFTER = 0.6
 """After this many seconds of work, a robot shows that it is thinking."""
 
@@ -51,7 +51,7 @@ async def connect(ctx: rs.RuleContext) -> rs.Resign | None:
         assert node is not None  # `_not_now` has checked this
         made = Connection(robot, node, ctx.sleep, lambda: ctx.now, settings.speech_timeout)
         _connected.add(node)
-        ctx[body] = made  # before the connection is open, so that the first words wait for it
+        ctx[body] = made  # now, so that the first words wait until the connection is open
         await made.open()
 
         def hear(message: Any) -> None:

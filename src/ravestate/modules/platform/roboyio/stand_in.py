@@ -30,7 +30,7 @@ class Looks:
         yaw, pitch, roll: The head's angles (radians).
         text: The words in the speech bubble; empty if there are none.
         seconds: How many seconds it takes to speak these words.
-        gesture: The last gesture and a running number, so that a repeated gesture is a change.
+        gesture: The last gesture and a running number, so that a repeated gesture counts as a change.
         people: The names of the people whom the robot sees.
     """
 

@@ -132,7 +132,7 @@ class Bus:
         server.frames.send(Kind.CALL, place, own, body)
 
     def answer(self, kind: Kind, own: int, body: memoryview) -> None:
-        """Pass on the answer to the call that the bus numbered `own` to the caller."""
+        """Pass on an answer to the caller. `own` is the number that the bus has given to the call."""
         call = self.calls.pop(own, None)
         if call is not None and kind is Kind.FAULT:
             call.caller.frames.tell(Kind.FAULT, bytes(body).decode(), call.channel, call.number)
@@ -148,7 +148,7 @@ class Bus:
         }
 
     def graph(self, asker: _BusNode) -> dict[str, Any]:
-        """Return all topics and services, with the numbers of publishers, subscribers and servers besides `asker`."""
+        """Return all topics and services. Count their publishers, subscribers and servers, without those of `asker`."""
         topics: dict[str, dict[str, Any]] = {}
         services: dict[str, dict[str, Any]] = {}
         for node in self._nodes:

@@ -40,7 +40,7 @@ class Line:
     Attributes:
         good: Whether the slot or part is without faults.
         what: The name of the slot or part.
-        text: The binding, and the other end or a fault with its remedy.
+        text: The binding. Then the nodes at the other end, or a fault with its remedy.
     """
 
     good: bool
@@ -80,7 +80,9 @@ def look_at(slot: Bound, node: Node, graph: Mapping[str, list[dict[str, Any]]]) 
         alike = [row for row in graph[PLACES[binding.kind]] if _has(row, binding.type, KINDS[binding.kind])]
         known = [row["name"] for row in alike if row["name"] != name]
         hint = (
-            f"; this type is used by {', '.join(sorted(known)[:3])}: set `remap`, or write that name" if known else ""
+            f"; this type is used by {', '.join(sorted(known)[:3])}: set `remap`, or write the name that you mean"
+            if known
+            else ""
         )
         return Line(False, slot.name, f"{bound}: no {OTHERS[binding.kind]}{hint or ': start the other node'}")
     if row["types"] and not _has(row, binding.type, KINDS[binding.kind]):

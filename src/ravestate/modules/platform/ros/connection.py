@@ -12,7 +12,7 @@ from .outbox import Outbox
 
 LENGTH = struct.Struct("<I")
 BLOCK = 1 << 12
-"""The bytes to read in one call, unless the rest of a message is longer. A larger buffer takes longer to allocate."""
+"""Read this many bytes in one call, unless the rest of a message is longer. A larger buffer takes longer to allocate."""
 TURN = 1 << 20
 """After reading this many bytes, give the loop a turn."""
 MESSAGES = 1000
@@ -69,7 +69,7 @@ class ToSubscriber(_Connection):
     Args:
         sock: The connected socket; this object closes it.
         lost: A function to call once on the loop when the subscriber has closed the connection.
-        depth: The maximum number of messages that wait for the subscriber. A further message replaces an old one.
+        depth: The maximum number of messages that wait for the subscriber. A further message replaces the oldest one.
     """
 
     def __init__(self, sock: socket.socket, lost: Callable[[], None], depth: int) -> None:
@@ -102,7 +102,7 @@ class FromPublisher(_Connection):
 
     Args:
         sock: The connected socket; this object closes it.
-        take: A function to call on the loop with each message, and with whether it is the newest one so far.
+        take: A function to call on the loop with each message, and with True if the message is the newest one so far.
         lost: A function to call once on the loop when the publisher closes the connection, or sends invalid data.
         warn: A function to call with a sentence about data that are not a message.
         first: The bytes that were already read.
@@ -123,7 +123,7 @@ class FromPublisher(_Connection):
         self._lacks = BLOCK
 
     def read(self) -> None:
-        """Read all data that have come. Only then pass on the complete messages, because the last one is the newest."""
+        """Read all data that have come, then pass on the complete messages. Only the last of them counts as the newest."""
         bodies = list[memoryview]()
         goes_on, room = self._split(bodies), TURN
         while goes_on and room > 0 and len(bodies) < MESSAGES:

@@ -14,7 +14,10 @@ from .connection import FromPublisher, ToSubscriber
 
 @dataclass(eq=False, slots=True)
 class Publisher:
-    """A publisher of another node. If it latches, `last` is its last message, and the channels in `late` still wait for it."""
+    """A publisher of another node.
+
+    If the publisher latches, `last` is its last message. The channels in `late` still wait for this message.
+    """
 
     topic: str
     type: str
@@ -33,7 +36,7 @@ class Connections:
     """The connections that the bridge has made and then passed to the agent.
 
     Args:
-        hang_up: A function that tells the bridge that the connection with a number has ended.
+        hang_up: A function that tells the bridge the number of a connection that has ended.
         warn: A function to call with a sentence for the log.
     """
 

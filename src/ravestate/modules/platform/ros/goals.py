@@ -1,4 +1,4 @@
-"""Actions of ROS 1. An action consists of five topics (the protocol of actionlib), so it needs no package."""
+"""Actions of ROS 1. An action consists of five topics (the protocol of actionlib), so the agent needs no package for it."""
 
 from __future__ import annotations
 
@@ -29,8 +29,8 @@ class _Goal:
     feedback: Callable[[Any], None] | None
     listed: asyncio.Event = field(default_factory=asyncio.Event)
     tracked: bool = False
-    """Whether a status of the server has listed the goal. Feedback alone does not count: an older status may follow
-    it."""
+    """Whether a status of the server has listed the goal. Feedback alone does not count, because a
+    status from before the goal may come after the feedback."""
 
 
 class GoalTopics:
@@ -39,7 +39,7 @@ class GoalTopics:
     Args:
         node: The node.
         name: The name of the action.
-        type: The full name of its type, which the node's types know.
+        type: The full name of the action's type. The node has already loaded the type.
         timeout: A server must list a goal within this many seconds.
     """
 

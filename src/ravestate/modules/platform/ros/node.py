@@ -144,7 +144,7 @@ class Node:
             type: The type's name.
             take: The function to call on the loop.
             latest: Whether a new message may replace an older one that `take` has not received yet.
-            rate: The maximum number of messages per second. `take` gets the newest message of each interval.
+            rate: The maximum number of messages per second. `take` gets the newest message of each interval (1 / `rate` seconds).
             qos: The quality of service; see `naming.quality`.
 
         Raises:

@@ -15,8 +15,8 @@ class Outbox:
     Args:
         sock: The connected socket; its owner closes it.
         failed: A function to call when the other end is gone, so that the socket accepts no more data.
-        depth: The maximum number of pieces that wait behind the first one. A further piece replaces an old one. By
-            default, there is no limit.
+        depth: The maximum number of pieces that wait behind the first one. A further piece replaces the oldest of
+            them. By default, there is no limit.
     """
 
     def __init__(self, sock: socket.socket, failed: Callable[[], None], depth: int = 0) -> None:

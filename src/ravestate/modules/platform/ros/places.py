@@ -62,7 +62,9 @@ class Place:
 
 
 def ros1_place(python: Path | None) -> Place:
-    """Return the place of rospy: the interpreter `python`, the sourced ROS 1, a ROS 1 in /opt/ros, or Debian's.
+    """Return the place of rospy.
+
+    The order is: the interpreter `python`, the sourced ROS 1, a ROS 1 in /opt/ros, and Debian's rospy.
 
     Raises:
         PlatformError: There is no rospy.
@@ -83,7 +85,7 @@ def ros2_place(python: Path | None, backend: str = "auto") -> Place:
     """Return the place of rclpy or DDS.
 
     The order is: the interpreter `python`, the sourced ROS 2, a ROS 2 in /opt/ros, this environment, and the
-    environment of ``make ros``. If none of them has rclpy, look for DDS in the same environments.
+    environment of ``make ros``. For DDS, the order is: `python`, this environment, and the environment of ``make ros``.
 
     Args:
         python: The interpreter that the settings name, or None.

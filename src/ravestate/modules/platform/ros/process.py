@@ -24,7 +24,7 @@ ENDING = 3.0
 
 
 class BridgeProcess:
-    """The process of one bridge. Use it on one loop.
+    """The process of one bridge. Use an instance on one event loop only.
 
     Args:
         place: The program, and the interpreter that has its packages.

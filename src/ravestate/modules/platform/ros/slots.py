@@ -97,7 +97,7 @@ class Goal:
     task: asyncio.Task[Any] | None = None
 
     def follow(self, task: asyncio.Task[Any]) -> None:
-        """Pass on the end of the task that sends the goal, however it ends."""
+        """Pass the outcome of the task that sends the goal to the sender of the goal."""
         self.task = task
         task.add_done_callback(self._end)
 
@@ -152,11 +152,11 @@ class Declarations:
             name: The slot's name.
             topic: The topic, for example ``/chat``. Relative names and ``~private`` names are allowed.
             type: The type of the topic's messages, for example ``std_msgs/String``.
-            keep: With ``latest``, a newer message replaces a waiting one. With ``all``, the slot gets every message, unless
+            keep: With ``latest``, a newer message replaces a waiting message. With ``all``, the slot gets every message, unless
                 `rate` is given or a queue overflows.
-            rate: The maximum number of messages per second. The slot gets the newest message of each interval.
+            rate: The maximum number of messages per second. The slot gets the newest message of each interval (1 / `rate` seconds).
             qos: ROS 2: ``sensor_data``, ``latched``, or a dict of ``depth``, ``reliability``, ``durability``.
-            latch: ROS 2: whether to get the last message of a publisher that latches.
+            latch: ROS 2: whether to get the last message that a publisher has kept for late subscribers.
 
         Raises:
             DeclarationError: An argument is wrong.
@@ -174,7 +174,7 @@ class Declarations:
         slot = self._slot(module, name, TopicSlot, binding, keep="latest" if keep == "latest" else "all", input=True)
         node = self.node
 
-        @module_of(module).rule(
+        @as_module(module).rule(
             when=node.changed.max_age(None).detached(),
             reads=node,
             writes=slot,
@@ -226,7 +226,7 @@ class Declarations:
         slot = self._slot(module, name, TopicSlot, Binding(self.version, "publisher", topic, type, options))
         node = self.node
 
-        @module_of(module).rule(
+        @as_module(module).rule(
             when=slot.changed.max_age(None).detached(), reads=node, background=True, name=f"{name}_publish"
         )
         async def publish(ctx: rs.RuleContext) -> rs.Resign | None:
@@ -256,11 +256,11 @@ class Declarations:
         slot = self._slot(module, name, ServiceSlot, binding)
         node = self.node
 
-        @module_of(module).rule(
+        @as_module(module).rule(
             when=slot.requested.max_age(None), reads=node, emits=(slot.changed, slot.failed), name=f"{name}_call"
         )
         async def call(ctx: rs.RuleContext) -> rs.Resign | None:
-            """Call the service, and raise its answer."""
+            """Call the service, and raise the signal of its answer."""
             if (here := ctx[node]) is None:
                 return rs.Resign("there is no node")
             await here.prepare()
@@ -305,7 +305,7 @@ class Declarations:
         slot = self._slot(module, name, ActionSlot, binding)
         node = self.node
 
-        @module_of(module).rule(
+        @as_module(module).rule(
             when=slot.requested.max_age(None),
             reads=node,
             emits=(slot.changed, slot.failed, slot.feedback),
@@ -313,7 +313,7 @@ class Declarations:
             name=f"{name}_act",
         )
         async def act(ctx: rs.RuleContext) -> rs.Resign | None:
-            """Send the goal, and raise its feedback and its result."""
+            """Send the goal, and raise the signals of its feedback and its result."""
             asked = ctx.payload(slot.requested)
             if (here := ctx[node]) is None:
                 if isinstance(asked, Goal):
@@ -352,7 +352,7 @@ class Declarations:
             raise DeclarationError(str(error)) from None
 
     def _slot(self, module: Any, name: str, cls: type[Any], binding: Binding, **options: Any) -> Any:
-        owner = module_of(module)
+        owner = as_module(module)
         check_name(name, f"{owner.name}.slot")
         slot = cls(f"{owner.name}:{name}", None, origin=place_of_call(), always=True, **options)
         slot.binding = binding
@@ -391,11 +391,6 @@ async def perform(ctx: rs.RuleContext, slot: ActionSlot, goal: Any) -> Any:
 def _failure(task: asyncio.Task[Any]) -> str:
     """Return why a goal has no result; empty if it has one."""
     return "the goal was cancelled" if task.cancelled() else str(task.exception() or "")
-
-
-def module_of(module: Any) -> rs.Module:
-    """Return the module for an argument: the module itself, or the package that holds it."""
-    return as_module(module)
 
 
 def bind_all(ctx: rs.RuleContext, node: Node, version: int) -> None:

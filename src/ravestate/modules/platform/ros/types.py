@@ -134,7 +134,10 @@ class Types:
             raise PlatformError(f"a message is not of the type {name}: {error}") from error
 
     def message(self, value: Any, name: str) -> Any:
-        """Make a message of a type. `value` is as for `encode`; a message of this type is returned unchanged."""
+        """Return a value as a message of a type; for the arguments and errors, see `encode`.
+
+        A value that is already a message of this type is returned unchanged.
+        """
         return self._build(value, name, name)
 
     def _build(self, value: Any, name: str, path: str) -> Any:
@@ -204,7 +207,7 @@ class Types:
         return found
 
     def ros1_definition(self, name: str) -> tuple[str, str]:
-        """Return the text and the MD5 sum by which ROS 1 identifies a message type or a service type."""
+        """Return the text (empty for a service) and the MD5 sum by which ROS 1 identifies a message or service type."""
         if name.split("/")[1] == "msg":
             return self.store.generate_msgdef(name, ros_version=1)
         text = "".join(self._hashed(f"{name}_{title}") for title in PARTS["srv"])

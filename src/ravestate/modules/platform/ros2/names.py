@@ -19,7 +19,7 @@ class Settings(NodeSettings):
     backend: Literal["auto", "rclpy", "dds", "bus"] = "auto"
     """``rclpy``; ``dds``, which carries only topics; the built-in ``bus``; or ``auto``: rclpy, or else dds."""
     domain: int | None = pydantic.Field(None, ge=0, le=232)
-    """The domain. By default ``ROS_DOMAIN_ID`` in the environment, or else 0."""
+    """The number of the ROS 2 domain. By default ``ROS_DOMAIN_ID`` in the environment, or else 0."""
 
 
 module = rs.Module("ros2", settings=Settings)

@@ -30,8 +30,8 @@ MOST = 100  # the maximum number of updates in an answer
 PATIENCE = 10  # the bot waits this many seconds longer for an answer than `POLL`
 ANSWER = 20.0  # the maximum number of seconds to wait for the answer to any other request
 CONFLICTS = 4  # after this many conflicts in a row, the bot gives up, because another program polls the same bot
-SETTLED = 60.0  # after this many seconds, the bot never gives up: the other program came later
-CONFLICT_WAIT = 2.0  # the first wait after a conflict (seconds); after a crash, the server still holds the old request
+SETTLED = 60.0  # a bot that has run for this many seconds does not give up, because the other program came later
+CONFLICT_WAIT = 2.0  # the first wait after a conflict (seconds); a request from before a crash is a conflict, too
 REVOKED = "telegramio: the token is no longer valid: @BotFather has the new one"
 SECRET = "x-telegram-bot-api-secret-token"
 
@@ -66,7 +66,7 @@ async def _log_in(bot: Bot, root: str) -> User:
             return bot.bot
         except InvalidToken:
             raise PlatformError(
-                f"telegramio: {root} refuses the token: compare RAVESTATE_TELEGRAMIO_TOKEN with the one that @BotFather "
+                f"telegramio: {root} refuses the token: compare RAVESTATE_TELEGRAMIO_TOKEN with the token that @BotFather "
                 "shows (/mybots)"
             ) from None
         except TelegramError as error:
@@ -80,7 +80,7 @@ class Inlet:
         self._bot, self._me, self._room, self._carrier, self._settings = bot, me, room, carrier, settings
 
     async def listen(self, url: str, token: str) -> None:
-        """Receive the updates that the server sends to a webhook. The webhook stays set, so that no update is lost."""
+        """Receive the updates that the server sends to a webhook. It stays set, so that no update is lost."""
         from ravestate.modules.platform.chats.webhook import listen
 
         secret = hashlib.sha256(f"webhook {token}".encode()).hexdigest()

@@ -29,8 +29,8 @@ REACTIONS = frozenset(str(emoji.value) for emoji in ReactionEmoji)
 class TelegramCarrier:
     """Sends messages as a bot; see `Carrier`.
 
-    Telegram cannot recognise a repeated message. So after an attempt without an answer, `send` looks for the message:
-    the ids of a bot's messages grow, and Telegram says which of these messages the bot may edit.
+    Telegram cannot recognise a repeated message. So after an attempt without an answer, `send` looks for the message
+    under the next ids. It tries to edit the message of each id: Telegram lets a bot edit only its own messages.
 
     Args:
         bot: The bot.
@@ -105,7 +105,7 @@ class TelegramCarrier:
         return (await bot.send_message(chat, text, **place)).message_id
 
     async def _find(self, message: Outgoing) -> str | None:
-        """Return the id of a message that an earlier attempt has sent; None if no attempt has sent it."""
+        """Look for a message that an earlier attempt may have sent. Return its id; None if it is not found."""
         if not message.trace:
             return None
         await self.current.wait()

@@ -1,4 +1,4 @@
-"""Requests to the Bot API. Flood waits and failures of the server raise separate errors."""
+"""Requests to the Bot API. They raise different errors if the server asks for a wait, and if the server has failed."""
 
 from __future__ import annotations
 
@@ -20,7 +20,7 @@ class FloodError(TelegramError):
 
 
 class Requests(HTTPXRequest):
-    """Requests that raise a `FloodError` for a flood wait, so that the library does not warn about it."""
+    """Requests that raise a `FloodError` if the server asks for a wait. Otherwise the library would log a warning."""
 
     async def do_request(self, *values: Any, **named: Any) -> tuple[int, bytes]:
         """Make a request; return the status and the body of the answer."""

@@ -35,7 +35,7 @@ class DdsNode:
 
         if binding["kind"] not in ("subscriber", "publisher"):
             raise LookupError(
-                "{} is a service or an action, which need ROS 2 itself; DDS alone (ros2.backend=dds) carries topics".format(
+                "{} is a service or an action, which need ROS 2 itself; DDS alone (ros2.backend=dds) carries only topics".format(
                     binding["name"]
                 )
             )

@@ -1,4 +1,4 @@
-"""The child's end of the pipe between an agent and its bridge process. The programs in this folder use it.
+"""The child's end of the pipe between an agent and its bridge process. The programs in this folder use this module.
 
 A frame is a head (kind, flags, channel, number, size) and a body of `size` bytes. A body of at least `LARGE` bytes
 travels in shared memory: the sender copies it there once, and the pipe carries the file descriptor.
@@ -31,6 +31,9 @@ SUBSCRIBER, PUBLISHER, HANGUP = 16, 17, 18
 The agent sends OPEN, BIND, UNBIND, ACK, CANCEL, ASK, CLOSE and HANGUP. The bridge sends READY, FEEDBACK, TOLD, NOTE,
 SUBSCRIBER and PUBLISHER. Both send MESSAGE, CALL, ANSWER and FAULT. SUBSCRIBER and PUBLISHER come with a socket, which
 is the connection with another node.
+
+BIND opens a channel, and UNBIND closes it. ACK allows the next message of a channel. TOLD answers the question ASK about
+the network. NOTE is a text for the log. HANGUP says that a connection has ended.
 """
 
 
@@ -44,7 +47,7 @@ class Pipe:
         self._fds = []
 
     def send(self, kind, channel=0, number=0, body=b""):
-        """Send a frame. This call blocks until the agent reads."""
+        """Send a frame. If the pipe is full, this call blocks until the agent reads."""
         size = len(body)
         with self._sending:
             if size >= LARGE and hasattr(os, "memfd_create"):
@@ -112,7 +115,7 @@ class Pipe:
 class Outlet:
     """Carries the messages of one subscription to the agent.
 
-    With `latest`, a message waits until the agent has acknowledged the previous one. A newer message replaces the
+    With `latest`, a message waits until the agent has acknowledged the previous message. A newer message replaces the
     waiting message.
     """
 
@@ -142,11 +145,12 @@ class Outlet:
 
 
 def serve(open_node):
-    """Connect to the agent, and carry out its orders until it closes the pipe.
+    """Connect to the agent, and carry out its orders until the agent closes the pipe.
 
     Args:
         open_node: A function that takes the pipe and the configuration. It returns an object with the methods ``bind``,
-            ``unbind``, ``message``, ``call``, ``answer``, ``cancel``, ``ask`` and ``close``.
+            ``unbind``, ``message``, ``call``, ``answer``, ``cancel``, ``ask`` and ``close``, and for ROS 1 also
+            ``hang_up``.
     """
     signal.signal(signal.SIGINT, signal.SIG_IGN)  # Ctrl-C is for the agent, which ends this process cleanly
     pipe = Pipe(socket.socket(fileno=int(sys.argv[1])))

@@ -65,7 +65,7 @@ def call_class():
 
 
 def transport_class(node):
-    """Return the class of a connection with a publisher. If its messages are small, the agent reads them itself."""
+    """Return the class of a connection with a publisher. If the first message is small, the agent gets the connection."""
     from rospy.exceptions import TransportTerminated
     from rospy.impl.tcpros_base import TCPROSTransport, recv_buff
 
@@ -171,7 +171,7 @@ class Ros1Node:
             if _suits(binding, message._connection_header):
                 outlet.put(message._buff)
 
-        # Subscribers of one topic share rospy's queue. It has no limit; the outlet skips messages.
+        # rospy's queue has no limit, because all subscribers of a topic share it. The outlet skips old messages instead.
         # rospy allocates a new buffer for each read. Reading an image in parts costs less than a large buffer.
         subscriber = rospy.Subscriber(
             binding["name"], rospy.AnyMsg, take, queue_size=None, buff_size=1 << 16, tcp_nodelay=True
@@ -181,7 +181,7 @@ class Ros1Node:
         return subscriber
 
     def check(self, topic, header):
-        """Warn the agent about each of its subscriptions to a topic whose type differs from the publisher's type."""
+        """Warn the agent about each subscription to a topic that has another type than the publisher."""
         for channel, binding in list(self._bindings.items()):
             if header and binding["kind"] == "subscriber" and binding["name"] == topic and not _suits(binding, header):
                 self._pipe.note(channel, _mismatch(binding, header))
@@ -207,7 +207,7 @@ class Ros1Node:
         self._pipe.hand_over(connection.socket, kind, number, what)
 
     def hang_up(self, number):
-        """Forget a connection that the other node has closed."""
+        """Close and forget a connection that the agent or the other node has ended."""
         self._connections.pop(number).close()
 
     def _service_class(self, type_, md5):

@@ -247,7 +247,7 @@ class Ros2Node:
             self._executor.wake()
 
     def cancel(self, channel, number):
-        """Cancel a goal; or forget a call, so that a call without an answer does not stay in memory."""
+        """Cancel a goal. Or forget a call, because a call without an answer would stay in memory."""
         call = self._calls.pop((channel, number), None)
         if call is not None:
             call["cancelled"] = True
@@ -268,8 +268,8 @@ class Ros2Node:
         if kind == "action":
             thing.destroy()
         else:
-            # Destroy the entity through the node, which forgets it first. The executor would fail again and again on a
-            # destroyed entity that the node still lists.
+            # Destroy the entity through the node, so that the node first removes the entity from its list. Otherwise the
+            # executor would fail again and again on the destroyed entity.
             forget = {"subscriber": "subscription", "server": "service"}.get(kind, kind)
             getattr(self._node, f"destroy_{forget}")(thing)
         self._executor.wake()
