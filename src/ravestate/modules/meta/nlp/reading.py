@@ -106,7 +106,7 @@ SCHEMA: dict[str, Any] = {
 
 
 class ModelReader:
-    """Reads utterances with a language model. It never delays an answer for long.
+    """Reads utterances with a language model. The reader never delays an answer for long.
 
     After a failure, the next utterance is analysed without the model. Each further failure in a row doubles the number of
     such utterances, up to `MOST_SKIPPED`. The reader belongs to one event loop.

@@ -26,7 +26,8 @@ async def verbalise(ctx: rs.RuleContext) -> None:
         book = PhraseBook({meant.name: meant.phrases}, language=settings.language)
     else:
         own = settings.phrases if meant.file is None else (meant.file, *settings.phrases)
-        here = tuple(path.expanduser().absolute() for path in own)  # a relative path depends on the working folder
+        # The book is cached by these paths, and a relative path would depend on the working folder.
+        here = tuple(path.expanduser().absolute() for path in own)
         book = phrase_book(meant.package, here, settings.language)
     phrase = book.choose(meant.name, meant.parameters, ctx.random, ctx[last].get(meant.name))
     ctx[rawio.output] = phrase.text

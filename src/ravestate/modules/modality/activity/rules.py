@@ -117,5 +117,5 @@ def learn(ctx: rs.RuleContext) -> rs.Resign | None:
     try:
         ctx.log.info("learnt %s: %s", name, keep(folder_of(ctx.settings.folder), name, poses))
     except PlatformError as error:
-        ctx.log.error("%s", error)  # without a file, the agent forgets the movement when it ends
+        ctx.log.error("%s", error)  # without a file, the movement is forgotten when the process ends
     return None

@@ -15,7 +15,7 @@ Probability = Annotated[float, Field(ge=0, le=1)]
 
 
 class Settings(rs.Settings):
-    """The agent's temperament, and its emoji."""
+    """The probabilities of spontaneous feelings, the agent's names, and whether feelings show as emoji."""
 
     shy: Probability = 0.1
     """The probability that the agent is shy when the user talks about it."""

@@ -210,7 +210,7 @@ async def track(ctx: rs.RuleContext) -> None:
 
 
 def _reconsidered(ctx: rs.RuleContext, visitor: Visitor, face: FaceVec, decision: Decision) -> Visitor | None:
-    """Return the visitor of a track in the light of new vectors. None if the track now belongs to another person."""
+    """Return the visitor of a track; None if new vectors show that the track now belongs to another person."""
     settings: Settings = ctx.settings
     person = decision.person
     if person is None or person.id == visitor.node.id or person.id in visitor.mistaken:
@@ -286,7 +286,10 @@ def _recognised(ctx: rs.RuleContext, visitor: Visitor, person: ontology.Node) ->
     background=True,
 )
 async def move_up(ctx: rs.RuleContext) -> rs.Resign | None:
-    """Add a platform's user again, as another person. The delay lets other modules finish with the previous person."""
+    """Add a platform's user again, as another person, half a second after the removal.
+
+    By then, other modules have finished with the previous person.
+    """
     key = ctx.payload(interloc.users.removed).key
     visitor = ctx[visitors].get(key)
     if visitor is None or not visitor.moving:
