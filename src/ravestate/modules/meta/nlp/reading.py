@@ -29,7 +29,8 @@ LONGEST = 400
 FAITHFUL = 0.6
 """The least share of letters that `Reading.written` and the user's text must have in common."""
 MOST_SKIPPED = 64
-"""If the model fails repeatedly, at most this many utterances are analysed without it before it is tried again."""
+"""If the model fails repeatedly, at most this many utterances are analysed without the model before the next
+try."""
 
 _PROMPT = """\
 You annotate what a user types to a robot. Answer in JSON.

@@ -50,8 +50,8 @@ def as_intent(value: object) -> Intent:
 def phrase_book(package: str | None, own: tuple[Path, ...], language: str) -> PhraseBook:
     """Return a book of the built-in phrases, the phrases of `package`, and the files `own` (absolute paths).
 
-    If several of these have phrases for the same intent, the later ones in this list replace the earlier ones. All
-    contexts of the process share the book, so the process reads each file only once.
+    For the same intent and language, the phrases of a later source in this list replace the phrases of earlier sources.
+    All contexts of the process share the book, so the process reads each file only once.
     """
     packages = (HERE,) if package in (None, HERE) else (HERE, package)
     try:

@@ -32,8 +32,8 @@ ARMS = 5
 """The number of joints of the head and the arms, which come first in `JOINTS`. Their places are relative to the
 shoulders. The places of the legs are relative to the hips."""
 WIDTH = 0.72
-"""The usual distance between the shoulders, in torso lengths. It replaces the torso as the scale if no hips are
-visible."""
+"""The usual distance between the shoulders, in torso lengths. If no hips are visible, the length of the torso is
+computed from the shoulders with this ratio."""
 
 
 @dataclass(frozen=True, slots=True, eq=False)

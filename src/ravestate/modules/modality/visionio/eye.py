@@ -57,7 +57,7 @@ class Eye:
         return self._process
 
     async def open(self, source: str, *, loop: bool = False) -> bool:
-        """Open a camera: a device, a video file, or a folder. Return whether it is a live camera.
+        """Open a camera: a device, a video file, or a folder. Return True for a device, and False for files.
 
         Raises:
             PlatformError: The camera cannot be opened, or the worker cannot be started.

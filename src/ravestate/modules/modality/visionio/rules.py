@@ -103,7 +103,7 @@ def _is_heard(ctx: rs.RuleContext, signal: rs.Signal[Any]) -> bool:
     background=True,
 )
 async def see_user(ctx: rs.RuleContext) -> rs.Resign | None:
-    """Pass on pictures from the user's own camera. Ask for the next picture when the agent has fetched the last one."""
+    """Pass on pictures from the user's own camera. When the agent has fetched a picture, ask for the next picture."""
     user = ctx.payload(rawio.camera.changed)
     if user is None:
         return rs.Resign("the user has turned their camera off")
@@ -227,7 +227,7 @@ def _reconsidered(ctx: rs.RuleContext, visitor: Visitor, face: FaceVec, decision
 
 
 async def _arrival(ctx: rs.RuleContext, decision: Decision) -> Visitor:
-    """Return a new visitor. Add them to the present users, unless a platform has already added them."""
+    """Return a new visitor. Add the visitor to the present users, unless a platform has already added them."""
     users, all_visitors, now = ctx[interloc.users], ctx[visitors], ctx.now
     person = decision.person
     others = [key for key in users if not key.startswith(KEY)]
