@@ -30,7 +30,8 @@ class Settings(rs.Settings):
 module = rs.Module("idle", requires=[rawio], settings=Settings)
 
 bored = module.signal("bored")
-"""There was no activity for ``bored_after`` seconds. Each silence raises this once, including the one after startup.
+"""There was no activity for ``bored_after`` seconds. Each silence raises this signal once, including the
+silence after startup.
 
 A rule that speaks ends the silence. If the user ignores ``remarks`` remarks in a row, asks for quiet or says goodbye,
 the signal is not raised until the user speaks again. After words of sorrow, the signal is not raised until the user
@@ -44,10 +45,10 @@ impatient = module.signal("impatient")
 """A ready rule has waited for ``impatient_after`` seconds."""
 
 asked: rs.Slot[str] = module.slot("asked", "")
-"""The question at the end of the agent's last utterance; empty without one."""
+"""The question at the end of the agent's last utterance; empty if there is no question."""
 
 remarked: rs.Slot[bool] = module.slot("remarked", True)
-"""Whether the agent has spoken since it was last bored."""
+"""Whether the agent or the user has said, typed or shown anything since the agent was last bored."""
 
 unanswered: rs.Slot[int] = module.slot("unanswered", 0)
 """The number of remarks that the agent has made out of boredom since the user last said or wrote something."""

@@ -13,7 +13,7 @@ from ravestate.modules import rawio
 from .names import Settings, asked, bored, dismissed, hushed, impatient, module, remarked, sorrow, unanswered
 
 LONGEST = 1000
-"""The rule looks for a question in this number of characters at the end of the agent's words."""
+"""`notice_question` reads only this many characters, at the end of the agent's words."""
 
 
 @module.rule(
@@ -26,7 +26,7 @@ LONGEST = 1000
     background=True,
 )
 async def notice_silence(ctx: rs.RuleContext) -> rs.Resign | None:
-    """Emit `bored` after a long silence, unless the user wants silence."""
+    """Emit `bored` after a long silence, unless the user wants quiet, is sad, or has ignored the last remarks."""
     settings: Settings = ctx.settings
     if ctx[rs.activity]:
         return rs.Resign("there is something to do")
@@ -84,7 +84,8 @@ async def notice_delay(ctx: rs.RuleContext) -> None:
 async def notice_dismissal(ctx: rs.RuleContext) -> None:
     """Note whether the user asks for quiet, says goodbye or is sad. If the user asks for quiet, emit `hushed`.
 
-    The sentence model may take a few milliseconds, so it runs in a thread. The silence begins when this rule ends.
+    The sentence model may take a few milliseconds, so it runs in a thread. This is a foreground
+    rule, so the silence begins only when the rule ends.
     """
     meant, felt = await asyncio.to_thread(_understood, ctx.payload(rawio.input.changed))
     ctx[dismissed] = bool(meant & {"quiet", "farewell"})

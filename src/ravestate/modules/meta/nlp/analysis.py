@@ -97,7 +97,8 @@ class Analysis:
     """The move that a good listener makes next, such as to rejoice, console or advise."""
 
     questions: tuple[Analysis, ...] = ()
-    """The analyses of the single questions, if the utterance asks several; otherwise empty. Requests for facts count."""
+    """The analyses of the single questions, if the utterance asks several; otherwise empty. Requests for facts
+    count as questions."""
 
     intents: Mapping[str, Match] = field(default_factory=dict[str, Match])
     """Name of the signal of a designer's intent (`nlp.intent`) → the best match of a sentence for this intent."""
@@ -178,7 +179,7 @@ def analyse(
     if reading is not None and written is not None:
         question, yesno = reading.question_word, reading.yesno
     else:
-        # Until the network is loaded, an added question mark is the best evidence of a question.
+        # Until the network is loaded, a question mark that `normal` has added is the best evidence of a question.
         question = question_of(normal.unguessed if kinds().loaded else normal.text)
         yesno = yesno_of(normal.unguessed)
     closing = closing_of(tree, sentences)

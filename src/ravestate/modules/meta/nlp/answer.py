@@ -1,7 +1,8 @@
 """Recognise answers: yes, no, or unsure.
 
-A small network (``answers.onnx``, trained in ``tools/networks``) reads the whole text. The words in `PLAIN` always
-count. Until the network is loaded, or without the sentence model, only they and openings such as *no, ...* count.
+A small network (``answers.onnx``, trained in ``tools/networks``) reads the first `LONGEST` characters of a text. The
+answers in `PLAIN` always count. Until the network is loaded, or without the sentence model, only these answers and
+openings such as *no, ...* count.
 """
 
 from __future__ import annotations
@@ -42,7 +43,7 @@ PLAIN = {
     "no 1": "not_really probably_not i_do_not_think_so rather_not",
     "unsure": "maybe perhaps i_do_not_know no_idea not_sure it_depends",
 }
-"""A class → its answers. A low line stands for a space."""
+"""A class → its answers. An underscore stands for a space."""
 _PLAIN = {words.replace("_", " "): name for name, listed in PLAIN.items() for words in listed.split()}
 _OPENING = re.compile(r"\W*(yes|yeah|yep|no|nope|nah)[,.!]", re.IGNORECASE)
 """An answer before other words: *no. I have to go*."""
@@ -62,13 +63,14 @@ _BEGINS = re.compile(rf"\W*(?:(?:oh|well|so)\W+)*(?:{_YES})(?!\w)", re.IGNORECAS
 _ONLY = re.compile(rf"{_BEGINS.pattern}(?:\W+(?:{_YES}|please|thanks|thank you|now|all|everything))*\W*", re.IGNORECASE)
 _REFUSES = re.compile(r"\b(?:no|not|never|do ?nt|nothing|stop|cancel|leave|wait)\b|n['’]t\b", re.IGNORECASE)
 _LETTER = re.compile(r"[\W_]*[^ynk\W\d_]?[\W_]*", re.IGNORECASE)
-"""A single letter that is no answer: a key was hit or held down. The network has not learnt such letters."""
+"""A text without letters and digits, or with a single letter that is no answer (*y*, *n* and *k* are answers). The
+network has not learnt such texts."""
 _EMOJI = re.compile(r"\W*([👍👎])")
 _NETWORK = Classifier(Path(__file__).with_name("answers.onnx"))
 
 
 def yesno_of(text: str) -> YesNo:
-    """Return the meaning of `text`, in its normal form, as an answer.
+    """Return what `text`, an utterance in normal form, means as an answer.
 
     Example:
         >>> yesno_of("Yes, but not now."), yesno_of("I like tea.")

@@ -278,7 +278,7 @@ class Clause:
 
     @cached_property
     def subjects(self) -> list[Part]:
-        """The subjects of the clause. If it has none, they are those of its head clause, or the unsaid subject."""
+        """The clause's own subjects. Without these, the subjects of the head clause, or the unsaid subject."""
         own, head, verb = self.own_subjects, self.head_clause, self.verb
         above = self.tree.head(verb)
         if own and own[0].low in _RELATIVE and self._is_relative and len(own) == 1:
@@ -389,7 +389,10 @@ class Clause:
         return bare and not self.tree.children(self.verb, "mark", "dobj")
 
     def _in_phrases(self, head: Word, *, of: bool = True) -> list[tuple[Part, bool]]:
-        """Return the noun of the first prepositional phrase after the head. If there is none, look before the head."""
+        """Return the noun of the first prepositional phrase after the head. If there is none, look before the head.
+
+        Without `of`, phrases with the preposition *of* do not count.
+        """
         heads = [head, *self.tree.children(head, "advmod")]  # as in "next to the station"
         phrases = [word for word in self.tree.children_of(heads, "prep", "dative") if of or word.low != "of"]
         for phrase in sorted(phrases, key=lambda word: (word.index < head.index, word.index)):

@@ -15,7 +15,7 @@ from .verbs import VERBAL
 SHORTEST = 3
 """The minimum number of words of a question that can stand alone. *And you?* cannot."""
 LONGEST = 5
-"""The maximum number of words of a remark."""
+"""The maximum number of words of a remark: a sentence that only reacts to the agent, such as *haha, funny!*."""
 MOST = 8
 """The maximum number of sentences of an utterance with a closing question. *And you?* counts after
 any number of sentences."""

@@ -224,7 +224,7 @@ def _tops(tree: Tree, last: Word) -> list[Word]:
 
 
 def _back(tree: Tree, place: int) -> Word | None:
-    """Return the last word of the phrase before a negation or *but*, which a comma or an adverb may follow."""
+    """Return the last word of the phrase before a negation or *but*. A comma or an adverb may stand between them."""
     skipped = ("ADV", "CCONJ") if any(word.pos in VERBAL for word in tree.words) else ("ADV", "CCONJ", "PUNCT")
     while place >= 0 and (tree.words[place].low in _SKIPPED or tree.words[place].pos in skipped):
         place -= 1

@@ -1,7 +1,7 @@
 """Recognise questions and their kinds.
 
-A small network (``kinds.onnx``, trained in ``tools/networks``) reads each sentence. Until it is loaded, or without the
-sentence model, the first words and the question mark of a sentence decide.
+A small network (``kinds.onnx``, trained in ``tools/networks``) reads each sentence. Until the network is loaded, or
+without the sentence model, the first words and the question mark of a sentence decide.
 """
 
 from __future__ import annotations

@@ -90,7 +90,8 @@ analysis: rs.Slot[Analysis | None] = module.slot("analysis", None, always=True)
 instead of analysing the text."""
 
 yesno: rs.Slot[YesNo] = module.slot("yesno", YesNo(), always=True)
-"""The meaning of the utterance as an answer: yes or no. This slot is written last."""
+"""The meaning of the utterance as an answer: yes or no. This slot is written last, so a rule on
+``yesno.changed`` sees the new values of all slots."""
 
 intents: rs.Collection[Mapping[str, tuple[str, ...]]] = module.collection("intents")
 """The examples of the intents that `nlp.intent` declares: a module's name → name of a signal → sentences."""

@@ -76,7 +76,7 @@ class Pipeline:
         Raises:
             PlatformError: spaCy or the pipeline is missing, or the pipeline cannot be loaded.
         """
-        if self._nlp is not None:  # the lock is only for loading
+        if self._nlp is not None:  # do not wait for the lock, which another thread may hold while it parses
             return
         with self._lock:
             if self._nlp is None:
@@ -201,7 +201,8 @@ def _found(normal: Normal, doc: Any) -> tuple[Tree, tuple[Entity, ...]]:
 def _with_names(words: list[Word]) -> list[Word]:
     """Tag some nouns as names.
 
-    Inside a sentence, a noun with a capital is a name, unless most words have capitals. At the start, see `_is_name`.
+    Inside a sentence, a noun with a capital is a name, unless most words have capitals. At the start of a
+    sentence, `_is_name` decides.
     """
     capital = [word.text[:1].isupper() and word.text[1:].islower() for word in words]
     inside = 2 * sum(capital) <= len(words)

@@ -67,7 +67,7 @@ def _requests(clause: Sequence[Word]) -> bool:
 
 
 def _asks(word: Word) -> bool:
-    """Return whether a word is a question word. The *that* of a relative clause is none."""
+    """Return whether a word is a question word. *That* is no question word."""
     return word.tag in WH and word.low != "that"
 
 

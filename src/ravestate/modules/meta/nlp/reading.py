@@ -29,7 +29,8 @@ LONGEST = 400
 FAITHFUL = 0.6
 """The least share of letters that `Reading.written` and the user's text must have in common."""
 MOST_SKIPPED = 64
-"""If the model fails repeatedly, at most this many utterances are analysed without it before it is tried again."""
+"""If the model fails repeatedly, at most this many utterances are analysed without the model before the next
+try."""
 
 _PROMPT = """\
 You annotate what a user types to a robot. Answer in JSON.
@@ -106,7 +107,7 @@ SCHEMA: dict[str, Any] = {
 
 
 class ModelReader:
-    """Reads utterances with a language model. It never delays an answer for long.
+    """Reads utterances with a language model. The reader never delays an answer for long.
 
     After a failure, the next utterance is analysed without the model. Each further failure in a row doubles the number of
     such utterances, up to `MOST_SKIPPED`. The reader belongs to one event loop.

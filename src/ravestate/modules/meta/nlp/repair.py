@@ -15,7 +15,8 @@ _NEGATIONS = ("n't", "not", "nt")
 _BE = ("is", "are", "was", "were")
 _CLOSING = ("NOUN", "PROPN", "ADJ", "ADV", "VERB", "NUM", "PRON")
 _ACTIONS = (("do", "it"), ("have", "it"), ("do", "that"), ("have", "that"), ("do", "this"), ("have", "this"))
-"""Pairs of an auxiliary and a pronoun that are no question tag: *I can't let you do it*."""
+"""Pairs of an auxiliary and a pronoun that are no question tag: *I can't let you do it*. A question tag is an ending
+such as *don't you*."""
 _THINGS = word_set("it that this me him her them us one")
 """Pronouns before a question tag without a comma: *you like it don't you*."""
 _OBJECTIVE = word_set("me him us them")

@@ -35,7 +35,7 @@ def load(ctx: rs.RuleContext) -> None:
 
 @module.rule(when=rs.startup, background=True)
 def learn(ctx: rs.RuleContext) -> None:
-    """Load the matchers and networks in the background. Until then, only sentences that equal an example are recognised."""
+    """Load the matchers and networks in the background, so that the first utterance does not wait for them."""
     wait_for_prompt()
     try:
         load_models()

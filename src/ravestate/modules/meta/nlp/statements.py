@@ -124,7 +124,7 @@ class _Assertion:
     def _hearsay(self) -> bool:
         """Whether the statement reports somebody else's words: *Ada says that...*, *I heard that...*, *apparently...*.
 
-        The same is true of words that the speaker did not say: *I didn't say that I am shy*.
+        Words that the speaker denies having said count, too: *I didn't say that I am shy*.
         """
         if self._above is None or self._low & _REPORTS:
             return bool(self._low & _REPORTS)
@@ -235,9 +235,11 @@ class _Assertion:
         """Yield the phrases that a statement has in its clause, apart from its subject and its object.
 
         These are the nouns after prepositions and the complements of objects: *we called the dog Rex*. A proper noun
-        that is the object of *name*, *call* or *christen* counts, too. A contrast, as in *not in Bonn, but in Bern*,
-        has an asserted and a denied side. If `denied`, the statement belongs to the denied side. Such a statement has no
-        asserted phrase of a contrast, and of the denied phrases only `object`. Any other statement has no denied phrase.
+        that is the object of *name*, *call* or *christen* counts, too.
+
+        A contrast, as in *not in Bonn, but in Bern*, has an asserted and a denied phrase. If `denied` is true, the
+        statement is about the denied phrase: leave out the asserted phrase, and all denied phrases except `object`. If
+        `denied` is false, leave out all denied phrases.
         """
         for word in self._clause.own:
             if contrasted_with(self._tree, word) if denied else is_denied(self._tree, word):

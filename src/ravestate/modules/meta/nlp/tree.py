@@ -92,7 +92,7 @@ class Tree:
         return self.words[word.index + 1] if word.index + 1 < len(self.words) else None
 
     def phrase(self, words: Iterable[Word]) -> str:
-        """Return `words` as written, in text order. A space replaces the text that was between two of them."""
+        """Return `words` as written, in text order. A single space replaces any text between two of them."""
         written = ""
         last: Word | None = None
         for word in sorted(words, key=lambda word: word.index):

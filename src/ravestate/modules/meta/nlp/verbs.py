@@ -12,7 +12,8 @@ NEGATIONS = frozenset(["not", "n't", "nt", "never"])
 PLACES = word_set("here there home abroad outside inside upstairs downstairs away everywhere nowhere somewhere")
 _HEADS = ("ROOT", "conj", "ccomp", "xcomp", "advcl", "relcl", "parataxis", "pcomp", "csubj", "dep", "acl")
 CONTACT = word_set("call phone ring text email visit meet contact write use")
-"""Verbs whose object is not the subject of a following infinitive: in *I called him to say hello*, I say hello."""
+"""Verbs whose object is not the subject of a following infinitive: in *I called him to say hello*, the speaker
+says hello."""
 SETTLING = word_set("sit stand lie get wake come go grow calm hurry slow run walk")
 """Verbs of posture and motion. They share no object with the verb after *and*: *sit down and read a book*."""
 FEELINGS = word_set(

@@ -63,7 +63,8 @@ def connect(path: Path, *, whole_log: bool = True) -> tuple[Any, Any]:
         buffer_pool_size=BUFFER,
         max_db_size=LARGEST,
         max_num_threads=1,
-        auto_checkpoint=False,  # the store makes checkpoints later: a checkpoint here could make the opening fail
+        # A checkpoint moves the log into the file. The store does this later, because it could make the opening fail.
+        auto_checkpoint=False,
         throw_on_wal_replay_failure=whole_log,
     )
     connection = ladybug.Connection(database, num_threads=1)

@@ -51,7 +51,8 @@ class EmbeddedStore:
 
     Committed writes are in the write-ahead log, on disk. If a write to that log fails, ladybug hangs in the next write,
     and ends the process when it closes the file. So the store checks the free space before each write. If a write still
-    fails, its incomplete record is cut off. The store then writes and closes nothing until the disk has room again.
+    fails, its incomplete record is cut off the log. The store then writes and closes nothing until
+    the disk has room again.
     """
 
     def __init__(self, path: Path) -> None:
@@ -254,7 +255,7 @@ class EmbeddedStore:
         )
 
     def note_bytes(self) -> None:
-        """Note in the file that ladybug leaves the bytes of deleted nodes in it."""
+        """Note in the file that the file still has the bytes of deleted nodes."""
         self._has_failed = False
         if not self._has_bytes:
             self.write(f"MERGE (m:`{META}` {{`key`: '{MARK}'}}) SET m.`value` = 1", {})
@@ -284,7 +285,7 @@ class EmbeddedStore:
             log.warning("memory %s: %s: %s", self._path, what, kept)
 
     def rest(self) -> None:
-        """Purge the file. If a purge has failed since the last deletion, do nothing: every pause would log a warning."""
+        """Purge the file, unless a purge has failed since the last deletion: each pause would log the same warning."""
         if not self._has_failed:
             self.purge()
 
@@ -323,7 +324,7 @@ class EmbeddedStore:
             note_load()  # two open databases have needed tens of megabytes more than one
 
     def tidy(self) -> None:
-        """Move the log's content into the file. Until then, ladybug holds a few megabytes for each written table."""
+        """Move the log's content into the file. Until then, each written table costs megabytes of main memory."""
         self._shorten_log(limit=0)
 
     def close(self) -> None:

@@ -95,10 +95,11 @@ class Graph:
             self._relate(node, relation, other, values)
 
     def unrelate(self, node: Node, relation: str, other: Node, /, *, forget: bool = False) -> None:
-        """Remove a relation, if there is one. With `forget`, also forget `other`, unless another node is related to it.
+        """Remove a relation, if there is one.
 
-        A person or robot also stays if memory knows more about them than their name. The file keeps none of the forgotten
-        bytes after the next `purge`, which happens by itself as soon as memory has nothing else to do.
+        With `forget`, also forget `other`, unless another node has a relation to it. A person or robot also stays if
+        memory knows more about them than their name. The file still has the bytes of forgotten nodes until the next
+        `purge`. Memory purges by itself as soon as it has nothing else to do.
         """
         self._types.check_relation(node.type, relation, other.type)
         with self._store.transaction():
@@ -159,7 +160,7 @@ class Graph:
     # ------------------------------------------------------------------------------------ merging and forgetting
 
     def merge(self, keep: Node, duplicate: Node, /) -> Node:
-        """Merge two nodes: give `keep` the duplicate's relations and any missing properties. Return `keep`.
+        """Merge two nodes: give `keep` the duplicate's relations, and the properties that `keep` lacks. Return `keep`.
 
         Raises:
             RuleError: The types do not fit: `keep` must have the duplicate's type or a subtype.
@@ -184,7 +185,7 @@ class Graph:
             return self._write(kept, self._types.stored(kept.type, missing))
 
     def _take_over(self, source: Node, name: str, target: Node, values: Mapping[str, Value]) -> None:
-        """Copy a relation to another pair of nodes. If the pair has the relation already, its properties stay."""
+        """Copy a relation to another pair of nodes. If this pair has the relation already, keep its properties there."""
         ends = self._ends(source, back=False)
         present = next((had for known, had, end in ends if (known, end.id) == (name, target.id)), dict[str, Value]())
         self._relate(source, name, target, self._types.stored(name, {**values, **present}))
@@ -319,7 +320,7 @@ class Graph:
         """
         id = raw.values.get("id")
         if raw.label not in self._types or not isinstance(id, str) or not id.startswith(f"{raw.label}:"):
-            return None  # the node is on a damaged page
+            return None
         return Node(raw.label, self._types.loaded(raw.label, raw.values), id)
 
     def _must_know(self, node: Node) -> Node:

@@ -69,7 +69,11 @@ class Memory:
 
     @property
     def types(self) -> Types:
-        """The declared types of nodes and relations."""
+        """The declared types of nodes and relations.
+
+        Raises:
+            RuleError: Memory is not open yet, or could not be opened.
+        """
         if not self._prepared.done() or self._prepared.exception() is not None:
             raise RuleError(f"memory ({self.place}) is not open: write await memory.opened() first")
         return self._prepared.result()
@@ -141,7 +145,7 @@ class Memory:
     def together(self, operations: Callable[[Graph], T], /) -> Reply[T]:
         """Run several operations as one transaction: either all operations take effect, or none.
 
-        If memory is a file, no other operation runs between them. A server may run operations of other programs.
+        If memory is a file, no other operation runs between them. On a server, other programs may run operations.
 
         Args:
             operations: A function that takes a `Graph`, called in memory's thread. A `Graph` has the operations of this

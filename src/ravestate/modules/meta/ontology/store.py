@@ -60,7 +60,7 @@ class Store(Protocol):
         ...
 
     def note_bytes(self) -> None:
-        """Note, in the same transaction, that deleted nodes leave bytes behind, so that `rest` or `close` removes them.
+        """Note, in the same transaction, that deleted nodes leave bytes behind; `rest` or `close` removes these bytes.
 
         If the process ends earlier, `rest` removes the bytes after the next opening.
         """
@@ -74,7 +74,7 @@ class Store(Protocol):
         ...
 
     def rest(self) -> None:
-        """Do the postponed work, because nobody is waiting for the store."""
+        """Do the postponed work: purge the database. The worker thread calls this method in pauses between jobs."""
         ...
 
     def tidy(self) -> None:
@@ -91,10 +91,10 @@ class Store(Protocol):
 
 
 def check_format(place: str, found: object, newest: int) -> int:
-    """Return the format of a memory; refuse a newer format than `newest`, which this version of ravestate knows.
+    """Return the format of a memory; refuse a format newer than `newest`, the newest known format.
 
     Raises:
-        PlatformError: The format is newer.
+        PlatformError: The format is newer, or is no number.
     """
     if not isinstance(found, int) or found > newest:
         raise PlatformError(

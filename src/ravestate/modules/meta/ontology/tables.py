@@ -94,7 +94,10 @@ def _owners(all_types: Iterable[Types]) -> tuple[dict[str, Mapping[str, Kind]], 
 
 
 def _owned(owners: Mapping[str, Mapping[str, Kind]]) -> dict[str, tuple[Kind, list[str]]]:
-    """Return the kind and the owners of each property. `Types` gives a name the same kind for all owners."""
+    """Return the kind of each property, and its owners: the types or relations that have it.
+
+    `Types` gives a property the same kind for all owners.
+    """
     owned: dict[str, tuple[Kind, list[str]]] = {}
     for owner, properties in owners.items():
         for name, kind in properties.items():
@@ -111,7 +114,8 @@ def _missing_columns(
 ) -> Iterator[str]:
     """Yield the statements for the columns of one table.
 
-    If a declared property needs the name of a column that has only values of hidden types, that column gets a new name.
+    A declared property may need the name of a column that has only values of undeclared types. That column then gets
+    a new name.
     """
     columns = {str(row[0]): str(row[1]) for row in execute(f"CALL table_info('{table}') RETURN name, type")}
     by_letters = {name.lower(): name for name in columns}

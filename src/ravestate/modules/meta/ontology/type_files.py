@@ -163,7 +163,7 @@ class _Reader:
     def _name(
         self, file: str, node: yaml.Node, name: str, among: Mapping[str, object], others: Mapping[str, object]
     ) -> None:
-        """Register the name of a type or relation. Names that differ only by upper and lower case are refused."""
+        """Register the name of a type or relation. Names may not be the same, or differ only by capitals."""
         _check_name(file, node, name, "type or relation")
         for other in (*among, *others):
             if other.lower() == name.lower() and (other != name or other in others):

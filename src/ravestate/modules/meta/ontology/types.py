@@ -114,7 +114,7 @@ class Types:
         }
 
     def loaded(self, owner: str, values: Mapping[str, Any]) -> dict[str, Value]:
-        """Return stored properties of a type or relation as rules see them, without missing and undeclared ones."""
+        """Return stored properties of a type or relation as rules see them, without missing and undeclared values."""
         return {
             name: _as_loaded(f"{owner}.{name}", kind, values[name])
             for name, kind in self._kinds(owner).items()

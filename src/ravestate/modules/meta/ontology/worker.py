@@ -73,7 +73,7 @@ class StoreWorker:
         return future
 
     def release(self) -> Future[None]:
-        """Release the worker for one user. The last release closes the store after all queued jobs."""
+        """End one use of the worker. The end of the last use closes the store after all queued jobs."""
         done: Future[None] = Future()
         with _lock:
             self._users -= 1

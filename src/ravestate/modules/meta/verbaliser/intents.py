@@ -19,7 +19,7 @@ class Intent:
     name: str
     """The intent's name in the files of phrases."""
     parameters: Mapping[str, object] = field(default_factory=dict[str, object])
-    """Name of a placeholder in the phrases → its value. A value of None counts as missing."""
+    """Name of a parameter in the phrases → its value. A value of None counts as missing."""
     package: str | None = None
     """The package whose ``phrases.yaml`` has phrases for the intent, usually the rule's ``__package__``."""
     file: Path | None = None

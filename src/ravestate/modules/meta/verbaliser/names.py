@@ -25,4 +25,4 @@ intent: rs.Slot[str | Intent | None] = module.slot("intent", None, type=str | In
 """The meaning to express now: the name of an intent, or an `Intent` with parameters."""
 
 last: rs.Collection[str] = module.collection("last")
-"""Name of an intent → the phrase (with placeholders) that was used for it most recently."""
+"""Name of an intent → the phrase (with its parameters in braces) that was used for it last."""

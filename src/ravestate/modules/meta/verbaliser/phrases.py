@@ -152,7 +152,7 @@ class PhraseBook:
         `last`, which was used the last time, is not chosen again if another template is eligible.
 
         Raises:
-            RuleError: There is no such intent or language, or each phrase lacks a parameter.
+            RuleError: There is no such intent or language, or each phrase needs a parameter without a value.
         """
         templates = self.templates(intent, language)
         given = {name: value for name, value in parameters.items() if value is not None}

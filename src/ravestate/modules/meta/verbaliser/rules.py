@@ -26,7 +26,8 @@ async def verbalise(ctx: rs.RuleContext) -> None:
         book = PhraseBook({meant.name: meant.phrases}, language=settings.language)
     else:
         own = settings.phrases if meant.file is None else (meant.file, *settings.phrases)
-        here = tuple(path.expanduser().absolute() for path in own)  # a relative path depends on the working folder
+        # The book is cached by these paths, and a relative path would depend on the working folder.
+        here = tuple(path.expanduser().absolute() for path in own)
         book = phrase_book(meant.package, here, settings.language)
     phrase = book.choose(meant.name, meant.parameters, ctx.random, ctx[last].get(meant.name))
     ctx[rawio.output] = phrase.text
@@ -49,8 +50,8 @@ def as_intent(value: object) -> Intent:
 def phrase_book(package: str | None, own: tuple[Path, ...], language: str) -> PhraseBook:
     """Return a book of the built-in phrases, the phrases of `package`, and the files `own` (absolute paths).
 
-    If several of these have phrases for the same intent, the later ones in this list replace the earlier ones. All
-    contexts of the process share the book, so the process reads each file only once.
+    For the same intent and language, the phrases of a later source in this list replace the phrases of earlier sources.
+    All contexts of the process share the book, so the process reads each file only once.
     """
     packages = (HERE,) if package in (None, HERE) else (HERE, package)
     try:

@@ -1,4 +1,4 @@
-"""Compute the features of a normalised movement. They do not depend on the movement's tempo, or on when it starts."""
+"""Compute the features of a normalised movement. The features do not depend on tempo, or on when the movement starts."""
 
 from __future__ import annotations
 
@@ -20,9 +20,9 @@ knees, the depth of the torso, and the height of the shoulders."""
 def features_of(skeleton: Skeleton) -> NDArray[np.float64]:
     """Return the `COUNT` features of a movement. A feature is NaN if the joints that it needs are not visible.
 
-    The features are the mean place of each joint, the size of its movement, and the correlations between pairs of
-    coordinates. Next come the rotations of the wrists, the distance between them, and their distances from the face.
-    All features are statistics over time, so tempo and phase do not matter.
+    First come the mean place and the size of the movement of each joint and of the torso. Next come the correlations
+    between pairs of coordinates. The last features describe the wrists: their rotations, the distance between them, and
+    their distances from the face. All features are statistics over time, so tempo and phase do not matter.
     """
     import numpy as np
 

@@ -26,9 +26,9 @@ class Film:
         return f"Film({len(self.poses)} poses, {self.poses[-1].at - self.poses[0].at:.1f} s)"
 
     def with_pose(self, pose: Pose) -> Film:
-        """Return the film with one more pose. A pose that is older than the last one begins a new film.
+        """Return the film with one more pose.
 
-        A pose of the same time as the last one is ignored.
+        A pose that is older than the film's last pose begins a new film. A pose of the same time is ignored.
         """
         if self.poses and pose.at <= self.poses[-1].at:
             return self if pose.at == self.poses[-1].at else Film((pose,))

@@ -42,7 +42,7 @@ class Lesson:
 
 
 class Settings(rs.Settings):
-    """The settings of activity: the recogniser's pace, and the folder of taught activities."""
+    """The settings of activity: how long and how often the recogniser looks, and the folder of taught activities."""
 
     window: Annotated[float, Field(ge=1.0, le=10.0)] = 3.0
     """The length of the movement for one recognition, in seconds."""
@@ -65,7 +65,8 @@ recognised: rs.Signal[Activity] = module.signal("recognised", payload=Activity, 
 An unknown movement does not raise it."""
 
 taught: rs.Signal[Lesson] = module.signal("taught", payload=Lesson, input=True)
-"""A user has named the movement between two times. The recogniser learns it from the poses between these times."""
+"""A user has named the movement between two times. The recogniser learns this movement from the poses
+between these times."""
 
 in_view: rs.Slot[bool] = module.flag("in_view", input=True)
 """Whether the camera sees a body."""

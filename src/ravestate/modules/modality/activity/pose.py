@@ -20,7 +20,7 @@ class Pose:
     """The landmarks of one body at one time. Two poses are equal only if they are the same object.
 
     Raises:
-        PlatformError: The points are not landmarks of this shape.
+        PlatformError: The points are not numbers of the shape (33, 4).
     """
 
     at: float
@@ -42,7 +42,7 @@ def pose_of(points: object, at: float, width: float, height: float) -> Pose:
         width, height: The size of the picture, in pixels.
 
     Raises:
-        PlatformError: The points are not such landmarks.
+        PlatformError: The points are not numbers of the shape (33, 4).
     """
     import numpy as np
 

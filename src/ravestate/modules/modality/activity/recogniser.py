@@ -5,8 +5,8 @@ correlation of features. A movement belongs to the activity that makes it most p
 is too far from that activity's mean, or if one of the starter set's *other* movements is more probable. The recogniser
 tries the movement and its mirror image.
 
-A new activity needs few demonstrations, because they determine only its mean. Its deviations are those of an average
-activity.
+A new activity needs few demonstrations, because they determine only its mean. Its deviations are computed from those of
+an average activity.
 """
 
 from __future__ import annotations
@@ -27,15 +27,17 @@ if TYPE_CHECKING:
     from numpy.typing import NDArray
 
 OWN = 0.9
-"""The weight of an activity's own variance in its deviations. An average activity's variance has the remainder."""
+"""The weight of an activity's own variance in its deviations. The remaining weight goes to the variance of an average
+activity."""
 RIDGE = 0.05
 """This variance is added to every feature, and all correlations shrink by this share."""
 SPREAD = 0.8
 """The deviations of a taught activity, relative to those of an average activity."""
 FAVOUR = 0.5
-"""The cost of a taught activity is lowered by this, so that a close comparison favours it (see `_compared`)."""
+"""The cost (see `_compared`) of a taught activity is lowered by this number, so that it wins a close comparison."""
 LIMIT = 4.0
-"""A movement up to this distance from a taught activity may belong to it (mean squared deviation of the features)."""
+"""The maximum distance of a movement from the taught activity to which it belongs (mean squared deviation of the
+features)."""
 REMEMBERED = 64
 """The number of inverse matrices to keep. Each set of visible features needs one matrix."""
 RUNNERS_UP = 3
@@ -56,7 +58,8 @@ class Recognition:
     others: tuple[tuple[str, float], ...] = ()
     """The next most likely names, with their confidence."""
     nearest: str = ""
-    """The most probable activity, even if the movement is too far from it. Empty for one of the *other* movements."""
+    """The most probable activity, even if the movement is too far from it. Empty if one of the *other* movements is more
+    probable, or if too little of the body is visible."""
     distance: float = float("inf")
     """The distance from the most probable activity (mean squared deviation of the features), divided by the limit."""
 
@@ -72,9 +75,9 @@ class Starter:
     deviations: NDArray[Any]
     """(activities, features): the deviations of the normalised features."""
     centre: NDArray[Any]
-    """(features,): to normalise features, subtract these values."""
+    """(features,): the values that are subtracted from features to normalise them."""
     size: NDArray[Any]
-    """(features,): then divide by these values."""
+    """(features,): the values by which features are divided after that."""
     usual: NDArray[Any]
     """(features,): the deviations of an average activity."""
     correlation: NDArray[Any]
@@ -157,7 +160,7 @@ class Recogniser:
         return frozenset(self._taught)
 
     def teach(self, name: str, poses: Sequence[Pose]) -> bool:
-        """Learn an activity from a demonstration. Return False if it shows too little of the body.
+        """Learn an activity from a demonstration. Return False if the demonstration shows too little of the body.
 
         Args:
             name: A new name, or the name of a known activity.
@@ -172,8 +175,8 @@ class Recogniser:
     def teach_features(self, name: str, sides: Sequence[NDArray[Any]]) -> None:
         """Learn an activity from the features of a demonstration, and the features of its mirror image.
 
-        Demonstrations may use the left or the right hand. The recogniser chooses the side that is nearer to the earlier
-        demonstrations.
+        People may demonstrate with the left or the right hand. So the recogniser keeps either the demonstration or its
+        mirror image: the one that is nearer to the earlier demonstrations.
         """
         np, group = self._np, self._taught.setdefault(name, [])
         both = [(side - self.starter.centre) / self.starter.size for side in sides]
@@ -239,7 +242,7 @@ class Recogniser:
     def _compared(self, features: NDArray[Any]) -> tuple[NDArray[Any], NDArray[Any], int]:
         """Return the distance from each activity, a cost for each activity, and the number of visible features.
 
-        The cost is twice the negative log likelihood per feature.
+        The cost is twice the negative log likelihood per feature, less `FAVOUR` for a taught activity.
         """
         np = self._np
         visible = ~np.isnan(features)

@@ -75,7 +75,7 @@ async def lose_sight(ctx: rs.RuleContext) -> None:
 
 @module.rule(when=due, reads=(movement, model), emits=recognised, detached=True, background=True)
 def recognise(ctx: rs.RuleContext) -> rs.Resign | None:
-    """Recognise the movement of the last seconds. This takes some milliseconds, so it runs in a thread."""
+    """Recognise the movement of the last seconds. This takes some milliseconds, so the rule runs in a thread."""
     settings: Settings = ctx.settings
     found = ctx[model]
     if found is None:
@@ -117,5 +117,5 @@ def learn(ctx: rs.RuleContext) -> rs.Resign | None:
     try:
         ctx.log.info("learnt %s: %s", name, keep(folder_of(ctx.settings.folder), name, poses))
     except PlatformError as error:
-        ctx.log.error("%s", error)  # without a file, the agent forgets the movement when it ends
+        ctx.log.error("%s", error)  # without a file, the movement is forgotten when the process ends
     return None

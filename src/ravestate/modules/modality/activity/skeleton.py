@@ -32,8 +32,8 @@ ARMS = 5
 """The number of joints of the head and the arms, which come first in `JOINTS`. Their places are relative to the
 shoulders. The places of the legs are relative to the hips."""
 WIDTH = 0.72
-"""The usual distance between the shoulders, in torso lengths. It replaces the torso as the scale if no hips are
-visible."""
+"""The usual distance between the shoulders, in torso lengths. If no hips are visible, the length of the torso is
+computed from the shoulders with this ratio."""
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -46,9 +46,9 @@ class Skeleton:
     present: NDArray[np.bool_]
     """(9,): whether a joint is visible for long enough."""
     torso: NDArray[np.float64]
-    """(T, 3): from the middle of the hips to the middle of the shoulders."""
+    """(T, 3): the vector from the middle of the hips to the middle of the shoulders."""
     rise: NDArray[np.float64]
-    """(T,): the height of the middle of the shoulders in the picture, relative to its mean."""
+    """(T,): the height of the middle of the shoulders in the picture, relative to the mean height."""
     has_hips: bool
     """Whether the hips are visible. If they are not, `torso` is meaningless."""
 
@@ -62,8 +62,9 @@ class Skeleton:
 
 
 def skeleton_of(poses: Sequence[Pose]) -> Skeleton | None:
-    """Return the normalised movement of some poses; None if they are too few or too short, or the shoulders are not
-    visible.
+    """Return the normalised movement of some poses.
+
+    Return None if there are too few poses, if they span too little time, or if the shoulders are not visible.
 
     The result does not depend on how far away the camera is, or on the side from which it looks. The camera must be
     upright and level. The origin moves with the body, and the unit is the length of the torso. The function turns the

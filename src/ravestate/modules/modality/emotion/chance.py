@@ -1,4 +1,4 @@
-"""Spontaneous feelings: certain words of the user are occasions that trigger them at random."""
+"""Spontaneous feelings: certain words of the user, such as a greeting, raise them at random."""
 
 from __future__ import annotations
 

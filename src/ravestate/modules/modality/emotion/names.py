@@ -15,7 +15,7 @@ Probability = Annotated[float, Field(ge=0, le=1)]
 
 
 class Settings(rs.Settings):
-    """The agent's temperament, and its emoji."""
+    """The probabilities of spontaneous feelings, the agent's names, and whether feelings show as emoji."""
 
     shy: Probability = 0.1
     """The probability that the agent is shy when the user talks about it."""
@@ -49,7 +49,7 @@ sad = module.signal("sad")
 """The agent is sad, because the user is sad or has insulted it."""
 
 felt: rs.Slot[Feeling | None] = module.slot("felt", None, always=True, keep="latest")
-"""The agent's last feeling; None before the first one."""
+"""The agent's last feeling; None before the first feeling."""
 
 sorrow: rs.Slot[int] = module.slot("sorrow", 0)
 """The number of utterances for which the user's words of sorrow still count, including the last utterance."""

@@ -23,8 +23,8 @@ SHARED: Mapping[str, Feeling] = {
     "joy": "happy",
     "astonishing": "surprised",
 }
-"""Class in ``feelings.yaml`` → the agent's feeling, the strongest class first. The file's other classes raise no
-feeling."""
+"""Class in ``feelings.yaml`` → the agent's feeling. If a text has several classes, the first in this list counts. The
+file's other classes raise no feeling."""
 
 SPOILERS = frozenset({"failure", "anger", "worry"})
 """If one part of a text has one of these classes, the classes of `SPOILED` do not count: "I got my results, and I

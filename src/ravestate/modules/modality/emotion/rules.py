@@ -19,7 +19,7 @@ from .names import Settings, affectionate, felt, happy, module, sad, shy, sorrow
 from .recogniser import recognise, sorrowful
 
 CHEERFUL: frozenset[Feeling] = frozenset({"happy", "surprised"})
-"""Feelings that would hurt a sad user, so the agent does not show them."""
+"""Feelings that are not raised while the user is sad, because they would hurt the user."""
 
 SIGNALS: dict[Feeling, rs.Signal[None]] = {
     "shy": shy, "surprised": surprised, "happy": happy, "affectionate": affectionate, "sad": sad,
@@ -65,7 +65,7 @@ def be_moved(ctx: rs.RuleContext) -> None:
 
 
 def note(feeling: Feeling) -> None:
-    """Declare the rule that notes a feeling when any rule has raised it."""
+    """Declare the rule that writes a feeling to `felt` when any rule has raised its signal."""
 
     @module.rule(
         when=SIGNALS[feeling].max_age(None).detached(),

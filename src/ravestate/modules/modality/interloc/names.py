@@ -35,7 +35,7 @@ recognised: rs.Signal[rs.Entry] = module.signal("recognised", payload=rs.Entry, 
 """A platform has recognised a user who was already present. The payload is their entry in `users`."""
 
 facts: rs.Collection[tuple[str, ...]] = module.collection("facts", input=True)
-"""The known facts about the user, by topic, such as ``home`` or ``sister``. A module that learns facts writes them."""
+"""The known facts about the user: topic, such as ``home`` → values. A module that learns facts writes them."""
 
 forgotten: rs.Signal[None] = module.signal("forgotten", input=True)
 """Memory has forgotten the user, so all modules delete their data about this user. `persqa` and the messengers raise

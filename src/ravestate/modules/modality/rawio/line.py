@@ -26,7 +26,7 @@ class Line(Protocol):
 
     @property
     def ended(self) -> bool:
-        """Whether the user's sound has ended, which happens only to a recording. Silence follows."""
+        """Whether a recording in place of a microphone has ended. After its end, `blocks` yields silence."""
         ...
 
     def blocks(self) -> AsyncIterator[bytes]:

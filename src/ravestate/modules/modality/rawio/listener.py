@@ -12,8 +12,8 @@ from .names import output, piece, speaking
 class Listener(Protocol):
     """The user's side of a conversation: it gets the agent's words.
 
-    `origin` is the ``ctx.origin`` of the words: the input that they answer, or None. If utterances grow at the same
-    time, it tells their pieces apart.
+    `origin` is the ``ctx.origin`` of the words: the input that they answer, or None. If several utterances grow at the
+    same time, `origin` shows to which utterance a piece belongs.
     """
 
     def utter(self, text: str, origin: object = None) -> None:
@@ -32,8 +32,9 @@ class Listener(Protocol):
 def rest(text: str, pieces: str) -> str | None:
     """Return the part of an utterance that follows its pieces; None if the pieces belong to another utterance.
 
-    Spaces at the beginning do not count. The pieces of a model often end in a space that the utterance lacks. If the
-    utterance goes on with a letter or a digit there, the pieces belong to another utterance.
+    Spaces at the beginning do not count. The pieces of a language model often end in a space that the utterance lacks;
+    such a space does not count, either. But if the utterance has a letter or a digit in place of this space, the pieces
+    belong to another utterance.
 
     Args:
         text: The whole utterance, from ``output``.
@@ -72,7 +73,8 @@ def carry(module: rs.Module, slot: rs.Slot[Any]) -> None:
         if listener := ctx[slot]:
             listener.fall_silent(ctx.origin)
 
-    # The condition does not ask for `speaking`: the error would wait for the flag, and end a later utterance.
+    # The condition does not ask for `speaking`. If it did, an error would wait for a later
+    # utterance, and end that one.
     @module.rule(
         when=rs.error.max_age(None).detached(), reads=speaking, writes=speaking, detached=True, background=True
     )

@@ -12,7 +12,7 @@ from .line import Line
 module = rs.Module("rawio")
 
 input = module.slot("input", "", type=str, always=True, input=True)
-"""The user's last utterance. Each utterance raises the signal, even if it repeats the last one."""
+"""The user's last utterance. Each utterance raises `input.changed`, even if it repeats the last one."""
 
 output = module.slot("output", "", type=str, always=True)
 """The agent's last utterance. Each write is one whole utterance."""

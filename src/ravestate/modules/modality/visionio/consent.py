@@ -68,7 +68,7 @@ def _open(ctx: rs.RuleContext) -> Question | None:
 
 @module.rule(when=rawio.output.changed.max_age(None).detached(), writes=asking, background=True)
 async def overhear(ctx: rs.RuleContext) -> rs.Resign | None:
-    """Drop the question when the agent says something else, because a later *yes* may be the answer to that."""
+    """Drop the question when the agent says something else, because a later *yes* may answer those words."""
     question = ctx[asking]
     if question is None or not any(letter.isalpha() for letter in ctx.payload(rawio.output.changed)):
         return rs.Resign("there is no question, or the output has no words")

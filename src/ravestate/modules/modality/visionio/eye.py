@@ -57,7 +57,7 @@ class Eye:
         return self._process
 
     async def open(self, source: str, *, loop: bool = False) -> bool:
-        """Open a camera: a device, a video file, or a folder. Return whether it is a live camera.
+        """Open a camera: a device, a video file, or a folder. Return True for a device, and False for files.
 
         Raises:
             PlatformError: The camera cannot be opened, or the worker cannot be started.
@@ -73,7 +73,7 @@ class Eye:
         Args:
             want: ``faces``, ``pose`` or both.
             request: The known tracks; see the docstring of the worker.
-            at: The time for a video or a folder (seconds since the beginning).
+            at: The time of the wanted picture in a video or a folder (seconds since the beginning).
             frame: The picture; None to look at the open camera.
 
         Raises:
@@ -106,8 +106,8 @@ class Eye:
         self._pid = None
 
     def close(self) -> None:
-        """Close the camera. If no other stream uses the worker, it ends."""
-        if self._process.busy:  # a look of this or another stream is running, and the loop must not wait for its end
+        """Close the camera. If no other stream uses the worker, the worker ends."""
+        if self._process.busy:  # the event loop must not wait for the end of a look, perhaps of another stream
             threading.Thread(target=self._close, name="visionio-close", daemon=True).start()
         else:
             self._close()

@@ -78,7 +78,7 @@ class Look:
     Attributes:
         time: The time of the picture (seconds on the context's clock).
         size: The picture's width and height (pixels).
-        tracks: The numbers of the faces in the picture.
+        tracks: The track numbers of the faces in the picture.
         dark: Whether the picture is black.
         dropped: How many pictures so far were skipped because newer ones had come.
     """

@@ -103,7 +103,7 @@ def _is_heard(ctx: rs.RuleContext, signal: rs.Signal[Any]) -> bool:
     background=True,
 )
 async def see_user(ctx: rs.RuleContext) -> rs.Resign | None:
-    """Pass on pictures from the user's own camera. Ask for the next picture when the agent has fetched the last one."""
+    """Pass on pictures from the user's own camera. When the agent has fetched a picture, ask for the next picture."""
     user = ctx.payload(rawio.camera.changed)
     if user is None:
         return rs.Resign("the user has turned their camera off")
@@ -210,7 +210,7 @@ async def track(ctx: rs.RuleContext) -> None:
 
 
 def _reconsidered(ctx: rs.RuleContext, visitor: Visitor, face: FaceVec, decision: Decision) -> Visitor | None:
-    """Return the visitor of a track in the light of new vectors. None if the track now belongs to another person."""
+    """Return the visitor of a track; None if new vectors show that the track now belongs to another person."""
     settings: Settings = ctx.settings
     person = decision.person
     if person is None or person.id == visitor.node.id or person.id in visitor.mistaken:
@@ -227,7 +227,7 @@ def _reconsidered(ctx: rs.RuleContext, visitor: Visitor, face: FaceVec, decision
 
 
 async def _arrival(ctx: rs.RuleContext, decision: Decision) -> Visitor:
-    """Return a new visitor. Add them to the present users, unless a platform has already added them."""
+    """Return a new visitor. Add the visitor to the present users, unless a platform has already added them."""
     users, all_visitors, now = ctx[interloc.users], ctx[visitors], ctx.now
     person = decision.person
     others = [key for key in users if not key.startswith(KEY)]
@@ -286,7 +286,10 @@ def _recognised(ctx: rs.RuleContext, visitor: Visitor, person: ontology.Node) ->
     background=True,
 )
 async def move_up(ctx: rs.RuleContext) -> rs.Resign | None:
-    """Add a platform's user again, as another person. The delay lets other modules finish with the previous person."""
+    """Add a platform's user again, as another person, half a second after the removal.
+
+    By then, other modules have finished with the previous person.
+    """
     key = ctx.payload(interloc.users.removed).key
     visitor = ctx[visitors].get(key)
     if visitor is None or not visitor.moving:

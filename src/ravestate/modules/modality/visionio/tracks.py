@@ -89,7 +89,7 @@ class Tracks:
     """The faces that the agent follows.
 
     Attributes:
-        sure: The number of vectors in a row that must agree.
+        sure: The number of vectors in a row that must agree before the agent decides whose face it is.
     """
 
     sure: int = 3

@@ -90,8 +90,8 @@ class Question:
     Attributes:
         key: The visitor's key in ``interloc.users``.
         time: The time of the question (seconds on the context's clock).
-        said: Whether the agent has said the question. If it then says something else, the question is dropped, because
-            a later *yes* may be the answer to that.
+        said: Whether the agent has said the question. If the agent then says something else, the question is dropped:
+            a later *yes* may answer those words.
     """
 
     key: str
@@ -145,7 +145,7 @@ def decide(history: Sequence[FaceVec], face: FaceVec, *, sure: int, quality: flo
 def whose(visitors: Mapping[str, Visitor], face: FaceVec, decision: Decision, threshold: float) -> Visitor | None:
     """Return the visitor to whom a new track belongs; None if a new person has come.
 
-    A face that was lost for a moment gets a new track. Memory or the vectors show to which visitor it belongs.
+    A face that was lost for a moment gets a new track. Memory or the vectors show to which visitor this track belongs.
     """
     for visitor in visitors.values():
         if decision.person is not None and visitor.node.id == decision.person.id:

@@ -104,7 +104,7 @@ class Watch:
 
         Args:
             want, request: As for `Eye.look`.
-            at: The time for a video or a folder (seconds since the beginning).
+            at: The time of the wanted picture in a video or a folder (seconds since the beginning).
             frame: The picture; True for the camera of the worker.
         """
         assert self._eye is not None
@@ -126,8 +126,8 @@ class Watch:
     async def rest(self, began: float, now: float, sleep: Sleep) -> bool:
         """Wait until the next look is due. Return whether there is a next look.
 
-        A look is due one period (1 / `fps`) after the last look was due. So a slow look, for example a thorough one,
-        does not lower the rate. But the share of the time for looking never exceeds the setting `load`.
+        A look is due one period (1 / `fps`) after the last look was due. So a slow look, for example a search
+        for small faces, does not lower the rate. But the share of the time for looking never exceeds the setting `load`.
 
         Args:
             began: The time at which this look began (seconds).

@@ -6,15 +6,19 @@ It runs in its own environment, and imports nothing from Ravestate. A request is
     {"do": "look", "stream": "a", "want": ["faces", "pose"], "at": 1.5, "known": [{"track": 3, "box": [x, y, w, h], "fresh": true}]}
     {"do": "close", "stream": "a"}
 
-A look without bytes looks at the camera's newest picture, or at a video's picture at the time ``at``. The answer to
-``open`` is ``{"live": true}`` for a device, and ``{"live": false}`` for files. This is the answer to a look:
+A look without bytes looks at the camera's newest picture, or at the picture of a video or folder at the
+time ``at`` (seconds). The answer to ``open`` is ``{"live": true}`` for a device, and ``{"live": false}`` for files. This
+is the answer to a look:
 
     {"picture": [width, height], "dark": false, "pose": [[x, y, z, visibility], ...] | null,
      "faces": [{"box": [x, y, w, h], "track": 3 | null, "quality": 0.8 | null, "vector": [...] | null}],
      "ended": false, "skipped": 0, "waited": 0.02}
 
-The last line is there only for a look at a camera. An answer has ``fault`` if a camera or a picture has a fault. If
-there is no new picture, the answer has no field ``picture``.
+The last line is there only for a look at a camera. ``track`` is null for a new face. ``quality`` and ``vector`` are null
+if the look has computed no vector for the face. An answer has ``fault`` if a camera or a picture has a fault. If there
+is no new picture, the answer has no field ``picture``.
+
+`Faces.find` explains two more fields of a look: ``thorough`` and ``most``.
 
 The bytes of a look are an encoded picture (JPEG, PNG), or raw pixels. For raw pixels, the record has
 ``"shape": [height, width]``. It may have ``"encoding"`` (default ``rgb8``) and ``"step"`` (the length of a row in

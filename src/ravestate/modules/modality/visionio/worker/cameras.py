@@ -125,8 +125,8 @@ class Video:
         newest, begun = None, time.monotonic()
         while self._waiting is not None and self._waiting[0] <= at:
             if newest is not None and time.monotonic() - begun > BEHIND:
-                # A video that decodes too slowly is shown late. Without this limit, it would skip pictures for ever
-                # longer.
+                # If decoding takes longer than playing, the video is shown late. Without this limit, each call would skip
+                # more pictures than the call before.
                 break
             self.skipped += newest is not None
             newest = self._waiting

@@ -38,7 +38,8 @@ class Faces:
     """
 
     def __init__(self) -> None:
-        spec = find_spec("face_recognition_models")  # importing it needs a module that new versions of setuptools lack
+        # Do not import the package: it imports a module that new versions of setuptools lack.
+        spec = find_spec("face_recognition_models")
         if spec is None or not spec.submodule_search_locations:
             raise ImportError("No module named 'face_recognition_models'")
         models = Path(spec.submodule_search_locations[0]) / "models"
