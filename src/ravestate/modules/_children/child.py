@@ -10,6 +10,8 @@ from collections.abc import Mapping, Sequence
 
 ENDING = 2.0
 """After its standard output is closed, a process may take this many seconds to end by itself; then it is killed."""
+LONGEST = 1 << 16
+"""`Child.end` reads only this many bytes, at the end of the error output."""
 
 
 class Child:
@@ -96,8 +98,9 @@ class Child:
                 with contextlib.suppress(OSError):
                     pipe.close()
         if not self._errors.closed:
-            self._errors.seek(0)
-            said = self._errors.read(1 << 16).decode("utf-8", "replace").strip().splitlines()
+            size = self._errors.seek(0, os.SEEK_END)
+            self._errors.seek(max(0, size - LONGEST))
+            said = self._errors.read(LONGEST).decode("utf-8", "replace").strip().splitlines()
             how += f": {said[-1]}" if said else ""
             self._errors.close()
         return how
