@@ -118,6 +118,42 @@ def test_after_a_farewell_or_a_wish_for_quiet_the_agent_is_not_bored_until_the_u
         assert len(sim.read(times)) == 1
 
 
+@pytest.mark.parametrize("words", ["Goodbye!", "please be quiet"])
+def test_an_unfinished_line_does_not_end_the_quiet_that_the_user_wants(words: str) -> None:
+    with simulate(watch, settings={"idle": SOON}) as sim:
+        sim.say(words)
+        sim.advance(5.0)
+        sim.emit(rawio.typing)
+        sim.advance(600.0)
+        assert sim.read(times) == ()
+
+
+def test_without_remarks_an_unfinished_line_does_not_bore_the_agent() -> None:
+    with simulate(watch, settings={"idle": {**SOON, "remarks": 0}}) as sim:
+        sim.emit(rawio.typing)
+        sim.advance(600.0)
+        assert sim.read(times) == ()
+
+
+def test_an_unfinished_line_after_words_of_sorrow_does_not_bore_the_agent() -> None:
+    bundled_matcher("feelings").load()
+    with simulate(watch, settings={"idle": SOON}) as sim:
+        sim.say("my grandmother died last week")
+        sim.advance(5.0)
+        sim.emit(rawio.typing)
+        sim.advance(600.0)
+        assert sim.read(times) == ()
+
+
+def test_a_line_typed_while_the_agent_works_does_not_bore_it_before_the_silence() -> None:
+    with simulate(watch, settings={"idle": {"bored_after": 1.0, "writing_time": 1.0}}) as sim:
+        sim.say("hello")  # the agent answers 2 s later
+        sim.advance(0.5)
+        sim.emit(rawio.typing)
+        sim.advance(3.0)
+        assert sim.read(times) == pytest.approx((3.0,))
+
+
 def test_a_wish_for_quiet_raises_hushed() -> None:
     listener = rs.Module("listener", requires=[idle])
     count = listener.slot("count", 0)

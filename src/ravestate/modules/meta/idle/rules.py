@@ -12,13 +12,15 @@ from ravestate.modules import rawio
 
 from .names import Settings, asked, bored, dismissed, hushed, impatient, module, remarked, sorrow, unanswered
 
+QUIET = (rs.activity, dismissed, sorrow, unanswered)
+"""The slots that `_reason_for_quiet` reads."""
 LONGEST = 1000
 """`notice_question` reads only this many characters, at the end of the agent's words."""
 
 
 @module.rule(
     when=rs.activity.false.max_age(None) | rs.startup.detached(),
-    reads=(rs.activity, dismissed, sorrow, asked, unanswered),
+    reads=(*QUIET, asked),
     writes=remarked,
     emits=bored,
     until=rs.activity.true | rawio.typing,
@@ -28,14 +30,8 @@ LONGEST = 1000
 async def notice_silence(ctx: rs.RuleContext) -> rs.Resign | None:
     """Emit `bored` after a long silence, unless the user wants quiet, is sad, or has ignored the last remarks."""
     settings: Settings = ctx.settings
-    if ctx[rs.activity]:
-        return rs.Resign("there is something to do")
-    if ctx[dismissed]:
-        return rs.Resign("the user wants quiet")
-    if ctx[sorrow]:
-        return rs.Resign("the user is sad")
-    if ctx[unanswered] >= settings.remarks:
-        return rs.Resign("the user has not answered the last remarks")
+    if reason := _reason_for_quiet(ctx):
+        return rs.Resign(reason)
     await ctx.sleep(max(settings.bored_after, settings.answer_time if ctx[asked] else 0.0))
     ctx[remarked] = False
     ctx.emit(bored)
@@ -56,17 +52,34 @@ async def notice_user(ctx: rs.RuleContext) -> None:
 
 @module.rule(
     when=rawio.typing.max_age(None),
+    reads=QUIET,
     writes=remarked,
     emits=bored,
     until=rs.activity.true | rawio.typing | rawio.input.changed,
     detached=True,
     background=True,
 )
-async def notice_unfinished_line(ctx: rs.RuleContext) -> None:
-    """Emit `bored` if the user stops in the middle of a line."""
+async def notice_unfinished_line(ctx: rs.RuleContext) -> rs.Resign | None:
+    """Emit `bored` if the user stops in the middle of a line, unless the user wants quiet or is sad."""
+    if reason := _reason_for_quiet(ctx):
+        return rs.Resign(reason)
     await ctx.sleep(max(ctx.settings.bored_after, ctx.settings.writing_time))
     ctx[remarked] = False
     ctx.emit(bored)
+    return None
+
+
+def _reason_for_quiet(ctx: rs.RuleContext) -> str:
+    """Return why the agent may not be bored; empty if it may."""
+    if ctx[rs.activity]:
+        return "there is something to do"
+    if ctx[dismissed]:
+        return "the user wants quiet"
+    if ctx[sorrow]:
+        return "the user is sad"
+    if ctx[unanswered] >= ctx.settings.remarks:
+        return "the user has not answered the last remarks"
+    return ""
 
 
 @module.rule(
