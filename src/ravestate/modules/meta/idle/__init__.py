@@ -3,12 +3,13 @@
 from __future__ import annotations
 
 from . import rules
-from .names import Settings, asked, bored, hushed, impatient, module, remarked, sorrow, unanswered
+from .names import Settings, asked, bored, dismissed, hushed, impatient, module, remarked, sorrow, unanswered
 
 __all__ = [
     "Settings",
     "asked",
     "bored",
+    "dismissed",
     "hushed",
     "impatient",
     "module",
