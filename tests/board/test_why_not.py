@@ -160,6 +160,56 @@ def test_why_not_says_that_no_rule_raised_a_signal_for_this_cause(stage: Stage) 
     assert raiser.words == "demo:classify finished without raising it, at 0.000 s"
 
 
+def test_why_not_says_when_a_missing_signal_was_raised_not_when_the_run_of_its_raiser_ended(stage: Stage) -> None:
+    question = stage.module.signal("question")
+
+    @stage.module.rule(when=stage.input.changed, emits=question)
+    async def classify(ctx: rs.RuleContext) -> rs.Resign:
+        await ctx.sleep(2.0)
+        ctx.emit(question)
+        await ctx.sleep(3.0)
+        return rs.Resign("there is nothing more to classify")
+
+    @stage.module.rule(when=stage.input.changed.max_age(1.0) & question, writes=stage.output)
+    async def qa(ctx: rs.RuleContext) -> None: ...
+
+    with stage.run() as sim:
+        sim.put(stage.input, "?")
+        sim.advance(2.5)
+        (running,) = ask(sim, "qa").missing[0].raisers
+        sim.advance(4.0)
+        (resigned,) = ask(sim, "qa").missing[0].raisers
+    assert running.words == resigned.words == "demo:classify raised it, at 2.000 s"
+    assert (running.outcome, running.time) == ("running", None)
+    assert (resigned.outcome, resigned.time) == ("resigned", 5.0)
+
+
+def test_why_not_finds_the_run_that_raised_a_missing_signal_among_several_runs(stage: Stage) -> None:
+    part = stage.module.signal("part", payload=str)
+    question = stage.module.signal("question")
+
+    @stage.module.rule(when=stage.input.changed, emits=part)
+    async def split(ctx: rs.RuleContext) -> None:
+        for word in ("who", "me"):
+            ctx.emit(part, word)
+            await ctx.sleep(2.0)
+
+    @stage.module.rule(when=part, emits=question)
+    async def classify(ctx: rs.RuleContext) -> None:
+        await ctx.sleep(1.5)
+        if ctx.payload(part) == "who":
+            ctx.emit(question)
+
+    @stage.module.rule(when=stage.input.changed.max_age(1.0) & question, writes=stage.output)
+    async def qa(ctx: rs.RuleContext) -> None: ...
+
+    with stage.run() as sim:
+        sim.put(stage.input, "who me")
+        sim.advance(8.0)
+        (raiser,) = ask(sim, "qa").missing[0].raisers
+    assert (raiser.words, raiser.time) == ("demo:classify raised it, at 1.500 s", 1.5)
+
+
 def test_why_not_says_which_signal_a_rule_lacks_again_after_it_lost_a_spike(stage: Stage) -> None:
     @stage.module.rule(when=stage.input.changed & stage.touch.max_age(60), writes=stage.output)
     async def both(ctx: rs.RuleContext) -> None:

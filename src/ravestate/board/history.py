@@ -104,7 +104,7 @@ class History:
         self.values: dict[str, list[t.Set]] = {}  # by slot
         self.retired: dict[str, float] = {}  # rule → the time at which it retired
         self.fired: dict[str, list[float]] = {}  # rule → the times at which its runs fired
-        self.raising: set[tuple[int, str]] = set()  # pairs of a run and a signal that the run raised
+        self.raising: dict[tuple[int, str], float] = {}  # run, signal → the time at which the run first raised it
         self.dropped: dict[int, t.Dropped] = {}  # by spike
         self.first = self.last = 0.0  # the times of the first and the last record
         self._runs: dict[int, Attempt] = {}  # by activation
@@ -199,7 +199,7 @@ class History:
         match record:
             case t.Born():
                 self.born[record.spike] = record
-                self.raising.add((record.source, record.signal))
+                self.raising.setdefault((record.source, record.signal), record.time)
             case t.Held():
                 self._attempt(record.activation, record).take(record)
             case t.Started():

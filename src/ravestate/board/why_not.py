@@ -293,13 +293,17 @@ class _Inquiry:
         rule = self.description.rule(name)
         runs = [attempt for attempt in self.history.of(name) if attempt.started is not None]
         if runs:
-            ended = runs[-1].settled
-            if ended is None:
-                return Raiser(name, "running", None, f"{name} is running and may still raise it")
-            words = without(name, ended)
-            if (runs[-1].id, signal) in self.history.raising:
-                words = f"{name} raised it, at {seconds(ended.time)}"
-            return Raiser(name, ended.outcome, ended.time, words + (f": {ended.reason}" if ended.reason else ""))
+            raising = self.history.raising
+            run = next((run for run in runs if (run.id, signal) in raising), runs[-1])
+            ended = run.settled
+            if (run.id, signal) in raising:
+                words = f"{name} raised it, at {seconds(raising[run.id, signal])}"
+            elif ended is None:
+                words = f"{name} is running and may still raise it"
+            else:
+                words = without(name, ended) + (f": {ended.reason}" if ended.reason else "")
+            outcome, time = ("running", None) if ended is None else (ended.outcome, ended.time)
+            return Raiser(name, outcome, time, words)
         if rule is None or name in self.asked or len(self.asked) > DEEPEST:
             return Raiser(name, "not run", None, f"{name} did not run")
         self.asked.append(name)
