@@ -2,9 +2,11 @@
 
 from __future__ import annotations
 
+import contextlib
 import os
 import shlex
 import shutil
+import subprocess
 import sys
 from collections.abc import Mapping
 from dataclasses import dataclass, field
@@ -15,6 +17,9 @@ from ravestate.errors import PlatformError
 from ravestate.folders import user_folder
 
 CHILDREN = Path(__file__).with_name("children")
+
+PATIENCE = 10.0
+"""After this many seconds without an answer, an interpreter counts as one that does not have a package."""
 
 ROS1_MEND = "ROS 1 needs rospy: apt-get install python3-rospy ros-core, or name the Python that has it in ros1.python"
 ROS2_MEND = (
@@ -84,8 +89,9 @@ def ros1_place(python: Path | None) -> Place:
 def ros2_place(python: Path | None, backend: str = "auto") -> Place:
     """Return the place of rclpy or DDS.
 
-    The order is: the interpreter `python`, the sourced ROS 2, a ROS 2 in /opt/ros, this environment, and the
-    environment of ``make ros``. For DDS, the order is: `python`, this environment, and the environment of ``make ros``.
+    If the settings name an interpreter, that is the place. With the backend ``auto``, it runs rclpy, or DDS if it has only
+    that. Otherwise, the order is: the sourced ROS 2, a ROS 2 in /opt/ros, this environment, and the environment of ``make
+    ros``. For DDS, the order is: this environment, and the environment of ``make ros``.
 
     Args:
         python: The interpreter that the settings name, or None.
@@ -94,10 +100,12 @@ def ros2_place(python: Path | None, backend: str = "auto") -> Place:
     Raises:
         PlatformError: There is neither rclpy nor DDS.
     """
+    if python is not None:
+        named = str(python.expanduser())
+        only_dds = backend == "auto" and not _has(named, "rclpy") and _has(named, "cyclonedds")
+        return _dds(named) if only_dds or backend == "dds" else _ros2(named)
     apart = [Path(sys.prefix).parent / ".venvs" / "ros2", user_folder("data") / "ros2"]
     if backend in ("auto", "rclpy"):
-        if python is not None:
-            return _ros2(str(python.expanduser()))
         if os.environ.get("ROS_VERSION") == "2":
             return _ros2(_system_python())
         for setup in sorted(Path("/opt/ros").glob("*/setup.bash"), reverse=True):
@@ -109,8 +117,6 @@ def ros2_place(python: Path | None, backend: str = "auto") -> Place:
             if any(folder.glob("lib/python3*/site-packages/rclpy")):
                 return _ros2(str(folder / "bin" / "python"))
     if backend in ("auto", "dds"):
-        if python is not None:
-            return _dds(str(python.expanduser()))
         if find_spec("cyclonedds") is not None:
             return _dds(sys.executable)
         for folder in apart:
@@ -125,6 +131,14 @@ def _ros2(python: str, setup: Path | None = None) -> Place:
 
 def _dds(python: str) -> Place:
     return Place("ros2", "dds_node.py", python, mend=". DDS needs cyclonedds: pip install cyclonedds")
+
+
+def _has(python: str, package: str) -> bool:
+    """Return whether an interpreter can find a package."""
+    code = f"import importlib.util, sys; sys.exit(importlib.util.find_spec({package!r}) is None)"
+    with contextlib.suppress(OSError, subprocess.TimeoutExpired):
+        return subprocess.run([python, "-c", code], capture_output=True, timeout=PATIENCE, check=False).returncode == 0
+    return False
 
 
 def _system_python() -> str:
