@@ -10,6 +10,7 @@ import pytest
 
 import ravestate as rs
 from modules.modality.activity.performers import performance
+from ravestate.engine.trace import Settled
 from ravestate.modules import activity
 from ravestate.testing import Simulation, simulate
 
@@ -69,6 +70,15 @@ def test_an_unknown_movement_raises_no_signal_until_it_is_taught(tmp_path: Path)
         sim.advance(1.0)
         show(sim, performance("skiing", 2))
         assert again.names == {"nordic skiing"}
+
+
+def test_a_resignation_says_that_too_little_of_the_body_is_visible(tmp_path: Path) -> None:
+    with simulate(activity, settings={"activity": {"folder": tmp_path}}) as sim:
+        sim.advance(1.0)
+        show(sim, [activity.Pose(pose.at, np.full_like(pose.points, np.nan)) for pose in performance("rowing", 2)])
+        reasons = [one.reason for one in sim.trace if isinstance(one, Settled) and one.rule == "activity:recognise"]
+    assert reasons
+    assert all(reason.endswith("show too little of a body") for reason in reasons)
 
 
 def test_a_lesson_without_poses_or_without_a_name_has_no_effect(tmp_path: Path) -> None:

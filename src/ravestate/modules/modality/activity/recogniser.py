@@ -61,7 +61,8 @@ class Recognition:
     """The most probable activity, even if the movement is too far from it. Empty if one of the *other* movements is more
     probable, or if too little of the body is visible."""
     distance: float = float("inf")
-    """The distance from the most probable activity (mean squared deviation of the features), divided by the limit."""
+    """The distance from the most probable activity (mean squared deviation of the features), divided by the limit.
+    Infinite if too little of the body is visible."""
 
 
 @dataclass(frozen=True, slots=True, eq=False)

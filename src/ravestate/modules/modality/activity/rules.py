@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from math import isinf
+
 import ravestate as rs
 from ravestate.errors import PlatformError
 
@@ -82,6 +84,8 @@ def recognise(ctx: rs.RuleContext) -> rs.Resign | None:
         return rs.Resign("the recogniser is not loaded")
     poses = ctx[movement].part(ctx.payload(due) - settings.window, ctx.payload(due))
     seen = found.recognise(poses)
+    if isinf(seen.distance):
+        return rs.Resign(f"the {len(poses)} poses of this time show too little of a body")
     if not seen.name:
         return rs.Resign(f"the movement is unknown; it is nearest to {seen.nearest or 'other movements'}")
     ctx.emit(recognised, Activity(seen.name, seen.confidence, poses[0].at, poses[-1].at, dict(seen.others)))
