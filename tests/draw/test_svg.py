@@ -13,6 +13,7 @@ from draw.examples import diagrams, games, many_rules, prompting, rule
 from ravestate.declare.module import Module
 from ravestate.draw.build import build
 from ravestate.draw.graph import EDGES, NODES, Diagram, Edge, Node
+from ravestate.draw.style import stylesheet
 from ravestate.draw.svg import svg
 from ravestate.draw.text import clean
 
@@ -25,6 +26,12 @@ def parsed(diagram: Diagram) -> ElementTree.Element:
 
 def texts(root: ElementTree.Element, tag: str) -> list[str]:
     return [element.text or "" for element in root.iter(SVG + tag)]
+
+
+def test_the_style_of_a_diagram_inside_a_page_does_not_reach_the_rest_of_the_page() -> None:
+    selectors = re.findall(r"^([^@{}]+)\{", stylesheet(), re.MULTILINE)
+    assert selectors
+    assert [selector for selector in selectors if not selector.startswith(".srs ")] == []
 
 
 @given(diagrams())

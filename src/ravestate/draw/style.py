@@ -62,9 +62,13 @@ EDGE_STYLES: dict[EdgeKind, EdgeStyle] = {
 
 
 def stylesheet() -> str:
-    """Return the CSS of a standalone SVG. Each selector begins with the class ``srs`` or ``srs-paper``."""
+    """Return the CSS of a standalone SVG.
+
+    Each selector begins with the class ``srs`` of the root. So the style of an SVG inside a page does not reach the rest
+    of the page.
+    """
     rules: list[tuple[str, str, Paint, str]] = [
-        (".srs-paper", "fill", PAPER, ""),
+        (".srs .srs-paper", "fill", PAPER, ""),
         (".srs text", "fill", TEXT, f"font-family:{_FONTS};font-size:13px"),
         (".srs .srs-small", "fill", _FAINT, "font-size:10.5px"),
         (".srs .srs-label", "fill", TEXT, "font-size:10.5px"),
