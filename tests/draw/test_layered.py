@@ -1,6 +1,10 @@
 """Lines and labels get their own vertices in the layers that they pass."""
 
+import pytest
+
+from ravestate.draw.graph import EdgeKind
 from ravestate.draw.layered import Link, proper_layering
+from ravestate.draw.style import EDGE_STYLES
 
 
 def link(low: int, high: int, label: tuple[float, float] | None = None, is_reversed: bool = False) -> Link:
@@ -18,6 +22,13 @@ def test_long_lines_from_one_port_share_their_dummies() -> None:
     assert graph.kind.count("dummy") == 2
     assert graph.chains[2][:2] == graph.chains[3][:2]
     assert graph.chains[1][0] == graph.chains[2][0]
+
+
+@pytest.mark.parametrize("kind", EDGE_STYLES)
+def test_long_lines_to_one_port_share_their_dummies_if_they_are_solid(kind: EdgeKind) -> None:
+    links = [Link(low, 3, kind, False, None) for low in range(3)]
+    graph = proper_layering([0, 0, 0, 3], [(10.0, 10.0)] * 4, links)
+    assert graph.kind.count("dummy") == (6 if EDGE_STYLES[kind].dashes else 2)
 
 
 def test_a_label_has_its_own_vertex_next_to_the_head_of_the_arrow() -> None:

@@ -14,13 +14,15 @@ from dataclasses import dataclass, field
 from typing import Literal
 
 from ravestate.draw.graph import EdgeKind
+from ravestate.draw.style import EDGE_STYLES
 
 VertexKind = Literal["node", "label", "dummy"]
 
 _GAPS = {(True, True): 16.0, (True, False): 12.0, (False, True): 12.0, (False, False): 9.0}
 """The minimum gap between two adjacent vertices (pixels). Key: whether the upper vertex is a node or a label (False for
 a dummy), and the same for the lower vertex."""
-_SOLID: tuple[EdgeKind, ...] = ("writes", "emits")  # solid lines may overlap; dashed lines would blur each other
+_SOLID = [kind for kind, style in EDGE_STYLES.items() if not style.dashes]
+"""The kinds of edges whose lines may overlap. Dashed lines would blur each other."""
 _PITCH = 10.0  # pixels between the ports of one side, if there is room
 _MARGIN = 10.0  # pixels from a corner, which may be round, to the first or last port
 _LEAST = 3.0  # minimum pixels between ports; with less room, ports coincide, but entering and leaving lines stay apart
