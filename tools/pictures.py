@@ -14,9 +14,10 @@ All pictures follow the viewer's light or dark theme, and need no other file.
 
 from __future__ import annotations
 
+import argparse
 import sys
 import tempfile
-from collections.abc import Iterable
+from collections.abc import Iterable, Sequence
 from dataclasses import dataclass, field
 from functools import cache
 from html import escape
@@ -404,9 +405,11 @@ def stale() -> list[str]:
     )
 
 
-def main(arguments: list[str]) -> int:
+def main(arguments: Sequence[str]) -> int:
     """Write the pictures, or check them; return the exit code."""
-    if "--check" in arguments:
+    parser = argparse.ArgumentParser(description="Draw the pictures of README.md and docs/.")
+    parser.add_argument("--check", action="store_true", help="write nothing; exit code 1 if a picture is out of date")
+    if parser.parse_args(arguments).check:
         names = stale()
         print("\n".join(f"docs/pictures/{name} is not up to date" for name in names), end="\n" if names else "")
         return 1 if names else 0

@@ -9,6 +9,7 @@ their JSON schemas. The first lines of a docstring, its ``Attributes:`` and the 
 
 from __future__ import annotations
 
+import argparse
 import ast
 import importlib
 import inspect
@@ -16,7 +17,7 @@ import itertools
 import json
 import re
 import sys
-from collections.abc import Iterator, Mapping
+from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Any, cast
@@ -217,11 +218,14 @@ def _comment(text: str, indent: int = 0) -> str:
     return f"{pad}/**\n{pad} * " + f"\n{pad} *\n{pad} * ".join(paragraphs) + f"\n{pad} */\n"
 
 
-def main(arguments: list[str]) -> int:
-    """Write the files, or check them."""
+def main(arguments: Sequence[str]) -> int:
+    """Write the files, or check them; return the exit code."""
+    parser = argparse.ArgumentParser(description="Write the TypeScript of a web protocol from its Python records.")
+    parser.add_argument("--check", action="store_true", help="write nothing; exit code 1 if a file is out of date")
+    check = parser.parse_args(arguments).check
     for name, source in FILES.items():
         file, made = ROOT / name, typescript(source)
-        if "--check" not in arguments:
+        if not check:
             file.write_text(made, encoding="utf-8")
         elif file.read_text(encoding="utf-8") != made:
             print(f"{name} is out of date: run python tools/protocol.py")

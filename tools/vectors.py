@@ -6,6 +6,7 @@ python tools/vectors.py --check    exit code 1 if vectors and examples differ; t
 
 from __future__ import annotations
 
+import argparse
 import os
 import sys
 import tempfile
@@ -35,13 +36,18 @@ the nearest example would change for 15 % of the utterances.
 
 def main(arguments: Sequence[str]) -> int:
     """Write the file, or check it; return the exit code."""
+    parser = argparse.ArgumentParser(description="Write the vectors of all built-in examples.")
+    parser.add_argument(
+        "--check", action="store_true", help="write nothing; exit code 1 if vectors and examples differ"
+    )
+    check = parser.parse_args(arguments).check
     wanted = {vectors.key_of(text): text for text in examples()}
     known = set[int]()
     if FILE.exists():
         with np.load(FILE, allow_pickle=False) as found:
             known = set(found["keys"].tolist())
     missing, stale = wanted.keys() - known, known - wanted.keys()
-    if "--check" in arguments:
+    if check:
         if missing or stale:
             some = "; ".join(sorted(wanted[key] for key in missing)[:5])
             print(
