@@ -18,10 +18,9 @@ import numpy as np
 
 from ravestate import modules
 from ravestate.cli.complete import COMPLETE
-from ravestate.language import matcher, moves, nearest, vectors
+from ravestate.language import matcher, moves, vectors
 from ravestate.language.encoder import Encoder
 from ravestate.language.matcher import Match
-from ravestate.language.nearest import Near
 from ravestate.testing import simulate
 
 FILE = Path(vectors.__file__).with_name(vectors.FILE)
@@ -83,25 +82,12 @@ def examples() -> list[str]:
         def move(self, *_: object) -> None:
             return None
 
-    class LearntNearest:
-        """A stand-in for an index, which only collects its examples."""
-
-        def __init__(self, examples: Sequence[str], *_: object) -> None:
-            seen.update(dict.fromkeys(examples))
-
-        def nearest(self, *_: object) -> list[Near]:
-            return []
-
-        def compared(self, _: object, places: Sequence[int]) -> list[float]:
-            return [0.0] * len(places)
-
     parts = [getattr(modules, name) for name in COMPLETE]
     settings = {"wildtalk": {"backend": "listen"}}
     with (
         tempfile.TemporaryDirectory() as folder,
         patch.object(matcher, "_Learnt", Learnt),
         patch.object(moves, "_Learnt", LearntMoves),
-        patch.object(nearest, "_Learnt", LearntNearest),
         patch.dict(os.environ, XDG_DATA_HOME=folder),
         simulate(*parts, settings=settings) as sim,
     ):

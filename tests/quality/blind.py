@@ -198,17 +198,6 @@ def measured_feelings() -> list[Result]:
     return [Result("feelings", len(cases), {**result.shares, "false alarms": alarms / len(cases)})]
 
 
-def measured_smalltalk() -> list[Result]:
-    """Measure how often the listener's answer names the user's topic or contains a pronoun."""
-    cases = [row for row in rows("smalltalk") if row[2] != NONE]
-    modules.prepare(text for text, _, _ in cases)
-    taken = 0
-    for text, _, about in cases:
-        words = set(re.findall(r"[\w']+", skills.smalltalk(text).lower()))
-        taken += bool(words & {*about.lower().split("|"), *_PRONOUNS})
-    return [Result("small talk", len(cases), {"taken up": taken / len(cases)})]
-
-
 def results() -> Iterable[Result]:
     """Measure all blind sets."""
     from quality.followups import measure_followups
@@ -227,4 +216,3 @@ def results() -> Iterable[Result]:
     yield from measured_facts()
     yield from measured_feelings()
     yield measure_followups(HERE / "followups.yaml")
-    yield from measured_smalltalk()

@@ -10,8 +10,9 @@ from __future__ import annotations
 from quality import measure
 from quality.measure import Result
 from ravestate.language.normal import normalise
-from ravestate.modules.skill.wildtalk.listening.material import PREFIX, material
-from ravestate.modules.skill.wildtalk.listening.responses import network, responses_to
+from ravestate.language.replies import replies
+from ravestate.modules.skill.wildtalk.listening.material import material
+from ravestate.modules.skill.wildtalk.listening.responses import responses_to
 
 NAME, GRADED = "responses_rows", "responses_grades"
 
@@ -45,31 +46,30 @@ def results() -> list[Result]:
 
 
 def measured() -> Result:
-    """Return the share of the utterances with a reply that may be said; and of these replies, the shares whose kinds suit
-    and are marked as wrong."""
-    network().load()
+    """Return the shares of the chosen replies whose kinds suit, and whose kinds are marked as wrong."""
+    replies().load()
     said: list[tuple[str, list[str], str]] = []
     for before, text, kinds in rows():
-        replies = responses_to(material(), normalise(text).unguessed, normalise(before).unguessed, dark=False)
-        said += [(text, kinds, one.kind.name.removeprefix(PREFIX)) for one in replies[:1]]
+        found = responses_to(material(), normalise(text).unguessed, normalise(before).unguessed)
+        said += [(text, kinds, one.kind.name) for one in found[:1]]
     suits = sum(name in kinds for _, kinds, name in said)
     wrong = [f"{text} -> {name}" for text, kinds, name in said if f"!{name}" in kinds]
-    shares = {"likely": len(said) / len(rows()), "suits": suits / len(said), "wrong": len(wrong) / len(said)}
+    shares = {"suits": suits / len(said), "wrong": len(wrong) / len(said)}
     return Result(NAME, len(rows()), shares, wrong)
 
 
 def measured_grades() -> Result:
     """Return how the readers graded the replies that the listener would choose among the graded ones."""
-    network().load()
+    replies().load()
     befores = {text: before for before, text, _ in rows()}
     chosen: list[tuple[str, str, int]] = []
     for text, grades in graded().items():
         before = normalise(befores[text]).unguessed
-        found = responses_to(material(), normalise(text).unguessed, before, dark=False)
+        found = responses_to(material(), normalise(text).unguessed, before)
         best = [one.line.text for one in found if one.line.text in grades]
         chosen += [(text, reply, grades[reply]) for reply in best[:1]]
     shares = {
         name: sum(one[2] == grade for one in chosen) / len(chosen) for grade, name in enumerate(("bad", "fair", "good"))
     }
     bad = [f"{text} -> {reply}" for text, reply, grade in chosen if grade == 0]
-    return Result(GRADED, len(chosen), {"likely": len(chosen) / len(graded()), **shares}, bad)
+    return Result(GRADED, len(chosen), shares, bad)

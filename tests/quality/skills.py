@@ -5,7 +5,6 @@ A sentence can begin with its situation in brackets: ``[asked home] hannover``.
 
 from __future__ import annotations
 
-import random
 import re
 from collections.abc import Callable, Iterable
 from functools import cache
@@ -26,7 +25,7 @@ from ravestate.modules.skill.persqa.talk import Talk
 from ravestate.modules.skill.persqa.topics import Fact
 from ravestate.modules.skill.persqa.understanding import Meaning, understand
 from ravestate.modules.skill.wildtalk.facts import asks_for_fact
-from ravestate.modules.skill.wildtalk.listening import Heard, Listener, State
+from ravestate.modules.skill.wildtalk.listening import Listener
 
 __all__ = ["FLOORS", "SETS", "result", "results"]
 
@@ -99,11 +98,6 @@ def listener() -> Listener:
     listener = Listener()
     listener.load()
     return listener
-
-
-def smalltalk(sentence: str) -> str:
-    """Return the listener's answer to an utterance that begins a conversation."""
-    return listener().answer(Heard(sentence, analysed(sentence)), State(), random.Random(0)).text
 
 
 def fact_label(fact: Fact) -> str:

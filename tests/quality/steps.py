@@ -34,12 +34,10 @@ from ravestate.modules.skill.persqa.reading import Reader
 from ravestate.modules.skill.persqa.told import Told, recalled, told_in
 from ravestate.modules.skill.wildtalk.gate import Gate
 from ravestate.modules.skill.wildtalk.listening import Heard
-from ravestate.modules.skill.wildtalk.listening.echo import told_in as statements_in
 from ravestate.modules.skill.wildtalk.listening.hearing import hear
 from ravestate.modules.skill.wildtalk.listening.material import material
 from ravestate.modules.skill.wildtalk.listening.repair import repair_in
 from ravestate.modules.skill.wildtalk.listening.state import State
-from ravestate.modules.skill.wildtalk.listening.taking_up import taken_from
 from ravestate.modules.skill.wildtalk.listening.tongue import tongue_of
 
 _SITUATION = re.compile(r"(?:\[([^\]]*)\] )?(.*)")
@@ -114,12 +112,6 @@ def charades_rows(sentence: str) -> str:
     return measure.NONE if move is None else f"{move.kind} {move.name}".strip()
 
 
-def turned_rows(sentence: str) -> str:
-    """Return a statement from the agent's view, the person of its subject, and its tense."""
-    found = max(statements_in(analysed(sentence), material().living), key=lambda one: one.start, default=None)
-    return f"{found.echo} / {found.subject} / {found.tense}" if found is not None and found.echo else measure.NONE
-
-
 def repairs_rows(sentence: str) -> str:
     """Return how a user objects to the agent's last answer. The situation is the user's utterance and this answer."""
     situation, text = _parts(sentence)
@@ -134,12 +126,6 @@ def refused_rows(sentence: str) -> str:
     return Gate("Ravestate", situation, known=_KNOWN, pipeline=pipeline("")).refuse(text) or measure.NONE
 
 
-def moments_rows(sentence: str) -> str:
-    """Return the situation that the listener finds in an utterance at the beginning of a conversation."""
-    state = listener().answer(Heard(sentence, analysed(sentence)), State(), random.Random(0)).state
-    return state.moment or measure.NONE
-
-
 def answer_tones_rows(sentence: str) -> str:
     """Return the tone of the listener's answer to an utterance at the beginning of a conversation."""
     return listener().answer(Heard(sentence, analysed(sentence)), State(), random.Random(0)).state.tone or measure.NONE
@@ -152,15 +138,17 @@ def asked_rows(sentence: str) -> str:
     return " / ".join(filter(None, parts)) or measure.NONE
 
 
-def highlights_rows(sentence: str) -> str:
-    """Return the phrase of an utterance that says most, and the tense of its statement."""
-    found = taken_from(analysed(sentence), material().living, "")
-    return f"{found.highlight} / {found.told.tense}" if found is not None and found.highlight else measure.NONE
-
-
 def tongues_rows(sentence: str) -> str:
     """Return the language of an utterance that is not English, or ``nonsense``."""
     return tongue_of(sentence, material().tongues) or ("nonsense" if is_nonsense(sentence) else measure.NONE)
+
+
+def performances_rows(sentence: str) -> str:
+    """Return the performance that an utterance asks for: ``joke``, ``song``, ``story`` or ``game``."""
+    wish = listener().wish(Heard(sentence, analysed(sentence)), State())
+    if wish is None:
+        return measure.NONE
+    return wish.kind if wish.kind in ("joke", "song", "story") else "game"
 
 
 def wishes_rows(sentence: str) -> str:
@@ -172,11 +160,17 @@ SETS: dict[str, Callable[[str], str | list[str]]] = {
     function.__name__: function
     for function in (
         written_rows, addressed_rows, closing_rows, introductions_rows, sums_rows, readings_rows, recalled_rows, charades_rows,
-        turned_rows, repairs_rows, refused_rows, moments_rows, answer_tones_rows, asked_rows, highlights_rows, tongues_rows, wishes_rows,
+        repairs_rows, refused_rows, answer_tones_rows, asked_rows, tongues_rows, wishes_rows, performances_rows,
     )
 }  # fmt: skip
-FLOORS = {name: 1 - max(0.05, 1.01 / len(measure.labelled(name))) for name in SETS} | {"answer_tones_rows": 0.8}
-"""The minimum share of right labels: one sentence, or 5 %, may be wrong. Tones are a matter of opinion."""
+FLOORS = {name: 1 - max(0.05, 1.01 / len(measure.labelled(name))) for name in SETS} | {
+    "answer_tones_rows": 0.8,
+    "performances_rows": 0.94,
+}
+"""The minimum share of right labels: one sentence, or 5 %, may be wrong. Tones are a matter of opinion, and people ask for
+performances in many ways."""
+UNASKED = 0.01
+"""The maximum share of utterances in `performances_rows` that ask for no performance, but get one."""
 
 
 def result(name: str) -> measure.Result:

@@ -15,10 +15,10 @@ from ravestate.modules.skill.wildtalk.small_talk import learn_all
 
 FLOORS = {
     "show": 0.85,
-    "repair": 0.8,
+    "repair": 0.75,
     "offence": 0.9,
     "self": 0.8,
-    "news": 0.9,
+    "news": 0.85,
     "bye": 0.9,
     "advice": 0.9,
     "closing": 0.8,

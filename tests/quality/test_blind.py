@@ -24,7 +24,6 @@ FLOORS = {
     ("facts, tricky", "nothing wrong"): 0.94,
     ("feelings", "right"): 0.92,
     ("followups", "right"): 0.53,
-    ("small talk", "taken up"): 0.54,  # a reply of the right kind often names no topic, but readers prefer it
 }
 
 

@@ -3,15 +3,10 @@
 from __future__ import annotations
 
 from quality.measure import labelled
-from quality.modules import analysed, prepare
-from quality.skills import listener
 from ravestate.language.examples import bundled
 from ravestate.language.moves import Move, bundled_moves
 from ravestate.language.normal import normalise
 from ravestate.language.sentences import sentences
-from ravestate.modules.skill.wildtalk.listening.hearing import asking_sentence, likely
-from ravestate.modules.skill.wildtalk.listening.material import material
-from ravestate.modules.skill.wildtalk.listening.meaning import SURE, moment_of
 
 ROWS = labelled("moves_rows")
 
@@ -41,18 +36,3 @@ def test_at_most_three_sentences_of_the_set_are_also_examples() -> None:
     known = {text.lower() for texts in bundled("moves").classes.values() for text in texts}
     shared = {text.lower() for text, _ in ROWS} & known
     assert len(shared) <= 3  # users ask "what do you know about me?" in many conversations
-
-
-def test_in_unseen_conversations_most_situations_that_the_listener_finds_belong_to_the_right_move() -> None:
-    listener()
-    bundled_moves().load()
-    prepare(text for text, _ in ROWS)
-    fitting: list[bool] = []
-    for text, move in ROWS:
-        read = analysed(text)
-        moves = likely(material(), read)
-        found, _, score = moment_of(material(), read, set(), moves, None, asking_sentence(read))
-        if found is not None and score >= SURE:
-            fitting.append(move in found.moves)
-    assert len(fitting) >= 30
-    assert sum(fitting) >= 0.8 * len(fitting)

@@ -79,7 +79,6 @@ def known() -> dict[str, Path]:
         ("kinds_fresh_rows.tsv", "kinds"),
         ("blind/kinds.tsv", "kinds"),
         ("responses_rows.tsv", "responses"),
-        ("blind/smalltalk.tsv", "responses"),
     ],
 )
 def test_a_set_of_unseen_sentences_shares_none_with_the_training(name: str, training: str) -> None:

@@ -1,6 +1,6 @@
 """Train the network that grades the replies of small talk, and write it into the module wildtalk.
 
-python tools/networks/responses.py            train; 15 minutes on 2 cores
+python tools/networks/responses.py            train; 35 minutes on 2 cores
 python tools/networks/responses.py --check    exit code 1 if the sentences or the grades have changed
 
 The network learns two things from one text: the kinds of reply that suit (``responses/*.tsv``), and the grades that
@@ -12,6 +12,8 @@ from __future__ import annotations
 
 import sys
 from collections.abc import Sequence
+from dataclasses import dataclass
+from functools import cache
 from pathlib import Path
 from typing import Any
 
@@ -21,26 +23,28 @@ from upper import upper_layers
 from ravestate.language.encoder import BUNDLED, Encoder
 from ravestate.language.lexicon import load_lexicon
 from ravestate.language.model import LAYERS
-from ravestate.language.network import EARLIER
+from ravestate.language.network import EARLIER, SAID
 from ravestate.language.normal import normalise
 
 HERE = Path(__file__).parent / "responses"
 GRADED = HERE / "graded"
-OUT = SRC / "modules" / "skill" / "wildtalk" / "listening" / "responses.onnx"
-FIRST, PLACE, DROPOUT = 8, 2, 0.2
+OUT = SRC / "language" / "replies.onnx"
+FIRST, PLACE, DROPOUT = 6, 1, 0.2
 """The network has its own layers from number FIRST on, of twelve. They read the sentence model's layer below, which is
 number PLACE of those that the sentence model returns."""
 SIZE = 96
 """The length of the two vectors that stand for a reply."""
-EPOCHS, BATCH, RATE = 3, 32, 1e-3
+EPOCHS, BATCH, RATE = 4, 32, 1e-3
 SHARES = 1.0, 0.6, 0.4, 0.3
 """The relative shares of the first kind of a text, the second..."""
 SPREAD = 0.1
 """Label smoothing: the share of the target that is spread over all kinds."""
 WRONG = 0.5
 """The weight of the penalty for kinds that are marked as wrong."""
-GRADES = 0.2
-"""The weight of the loss of one grade. A text has about ten grades."""
+GRADES, BEST = 0.1, 0.2
+"""The weight of the loss of one grade, and of the best reply of a text. A text has about ten grades."""
+SHARP = 3
+"""The factor of the grades in the loss of the best reply."""
 
 
 def texts_in(files: Sequence[Path]) -> dict[str, tuple[str, list[str]]]:
@@ -63,13 +67,25 @@ def replies_in(file: Path) -> list[tuple[str, str]]:
     return [(kind, text) for kind, text in (line.split("\t") for line in file.read_text("utf-8").splitlines())]
 
 
-def grades_in(files: Sequence[Path]) -> dict[str, list[tuple[int, int]]]:
-    """Return the grades of some files: text → pairs of a reply's number and its grade, 0 to 2."""
-    found: dict[str, list[tuple[int, int]]] = {}
+@dataclass(frozen=True, slots=True)
+class Graded:
+    """A text with grades of replies to it."""
+
+    before: str
+    said: str
+    """The agent's answer to the text before."""
+    text: str
+    grades: list[tuple[int, int]]
+    """Pairs of a reply's number and its grade, 0 to 2."""
+
+
+def graded_in(files: Sequence[Path]) -> list[Graded]:
+    """Return the graded texts of some files."""
+    found: list[Graded] = []
     for line in (line for file in files for line in file.read_text("utf-8").splitlines()):
-        text, grades = line.split("\t")
+        before, said, text, grades = line.split("\t")
         pairs = (grade.split(":") for grade in grades.split())
-        found.setdefault(text, []).extend((int(number), int(grade)) for number, grade in pairs)
+        found.append(Graded(before, said, text, [(int(number), int(grade)) for number, grade in pairs]))
     return found
 
 
@@ -87,7 +103,7 @@ def network(torch: Any, kinds: Sequence[str], replies: Sequence[tuple[str, str]]
     class Network(nn.Module):  # type: ignore[misc, name-defined]
         def __init__(self) -> None:
             super().__init__()
-            self.upper, self.mark = upper_layers(torch, FIRST), nn.Embedding(1 + EARLIER, WIDTH)
+            self.upper, self.mark = upper_layers(torch, FIRST), nn.Embedding(1 + SAID, WIDTH)
             self.drop, self.weight = nn.Dropout(DROPOUT), nn.Linear(WIDTH, 1)
             self.kinds, self.wanted = nn.Linear(3 * WIDTH, len(kinds)), nn.Linear(3 * WIDTH, 2 * SIZE)
             self.meaning, self.kind = nn.Linear(WIDTH, 2 * SIZE), nn.Embedding(len(kinds), 2 * SIZE)
@@ -97,9 +113,9 @@ def network(torch: Any, kinds: Sequence[str], replies: Sequence[tuple[str, str]]
                 nn.init.normal_(part.weight, 0, spread)
 
         def read(self, vectors: Any, marks: Any, lengths: Any) -> Any:
-            """Return the first vector of the text, a weighted mean, and the mean, without the utterance before."""
+            """Return the first vector of the text, a weighted mean, and the mean, without the texts before it."""
             padding = None if lengths is None else torch.arange(marks.shape[1])[None] >= lengths[:, None]
-            outside = marks == EARLIER if padding is None else (marks == EARLIER) | padding
+            outside = marks >= EARLIER if padding is None else (marks >= EARLIER) | padding
             tokens = self.upper(vectors[..., PLACE * WIDTH : (PLACE + 1) * WIDTH] + self.mark(marks), padding).float()
             inside = (~outside).float()
             first = tokens[torch.arange(len(tokens)), inside.argmax(1)]
@@ -134,8 +150,10 @@ def loss(torch: Any, made: Any, batch: Sequence[Row], wrong: dict[Row, list[int]
     """Return the loss of the kinds and of the grades.
 
     The loss of the kinds is the cross-entropy of the right ones, plus a penalty for the probability of the wrong ones. A
-    graded text teaches no kinds. Otherwise, the network would learn to trust the kinds that it knows by heart.
+    graded text teaches no kinds. Otherwise, the network would learn to trust the kinds that it knows by heart. The loss
+    of the grades has a part for each grade, and a part for the choice of the best reply.
     """
+    tools = torch.nn.functional
     with torch.autocast("cpu", torch.bfloat16):
         chances, found = (one.float() for one in made(*padded(torch, batch, noisy=False)))
     count = chances.shape[1]
@@ -143,17 +161,22 @@ def loss(torch: Any, made: Any, batch: Sequence[Row], wrong: dict[Row, list[int]
     for number, row in enumerate(batch):
         for kind, share in zip(row.classes, SHARES, strict=False):
             right[number, kind] = share / sum(SHARES[: len(row.classes)])
-        false[number, wrong[row]] = 1
+        false[number, wrong.get(row, [])] = 1
     taught = torch.tensor([float(row not in grades) for row in batch])
     hits = -((right * (1 - SPREAD) + SPREAD / count) * chances).sum(1)
     misses = -(torch.log1p(-chances.exp().clamp(max=0.999)) * false).sum(1)
     total = (taught * (hits + WRONG * misses)).mean()
-    graded = [(number, *pair) for number, row in enumerate(batch) for pair in grades.get(row, ())]
-    if graded:
-        rows, replies, marks = torch.tensor(graded).T
+    for number, row in enumerate(batch):
+        if row not in grades:
+            continue
+        replies, marks = torch.tensor(grades[row]).T
         reached = torch.stack([marks >= 1, marks >= 2], 1).float()
-        losses = torch.nn.functional.binary_cross_entropy_with_logits(found[rows, replies], reached, reduction="sum")
-        total = total + GRADES * losses / len(batch)
+        logits = found[number, replies]
+        lost = GRADES * tools.binary_cross_entropy_with_logits(logits, reached, reduction="sum")
+        if marks.max() > marks.min():
+            best = (marks == marks.max()).float()
+            lost = lost - BEST * ((SHARP * logits.sigmoid().sum(1)).log_softmax(0) * best).sum() / best.sum()
+        total = total + lost / len(batch)
     return total
 
 
@@ -167,22 +190,29 @@ def main(arguments: Sequence[str]) -> int:
 
     torch.manual_seed(0)
     load_lexicon()
-    known, replies, graded = texts_in(files), replies_in(GRADED / "replies.tsv"), grades_in(marked)
+    known, replies, graded = texts_in(files), replies_in(GRADED / "replies.tsv"), graded_in(marked)
     kinds = sorted({kind for kind, _ in replies})
-    rows = {text: Row(normalise(text).unguessed, longest=64) for text in known}
-    wrong: dict[Row, list[int]] = {}
+    row_of = cache(lambda text: Row(normalise(text).unguessed, longest=64))
+    grades: dict[Row, list[tuple[int, int]]] = {}
+    for one in graded:
+        row = Row(normalise(one.text).unguessed, longest=64)
+        row.before, row.said = row_of(one.before) if one.before else None, Row(one.said) if one.said else None
+        grades[row] = one.grades
+    rows, wrong, graded_texts = list(grades), dict[Row, list[int]](), {one.text for one in graded}
     for text, (before, names) in known.items():
-        row = rows[text]
-        row.before = rows.get(before)
+        if text in graded_texts:
+            continue
+        row = Row(normalise(text).unguessed, longest=64)
+        row.before = row_of(before) if before else None
         row.classes = [kinds.index(name) for name in names if name in kinds]
         wrong[row] = [kinds.index(name[1:]) for name in names if name[1:] in kinds and name.startswith("!")]
-    grades = {rows[text]: pairs for text, pairs in graded.items()}
-    print(f"{len(rows)} sentences, {sum(map(len, graded.values()))} grades of {len(replies)} replies", flush=True)
+        rows.append(row)
+    print(f"{len(rows)} texts, {sum(map(len, grades.values()))} grades of {len(replies)} replies", flush=True)
     made = network(torch, kinds, replies)
     made = trained(
         torch,
         made,
-        list(rows.values()),
+        rows,
         lambda made, batch: loss(torch, made, batch, wrong, grades),
         EPOCHS,
         BATCH,
@@ -190,7 +220,13 @@ def main(arguments: Sequence[str]) -> int:
         list(made.upper.parameters()),
     )
     made.fix()
-    about = {"labels": ";".join(text for _, text in replies), "sentences": digest(sources), "before": "1"}
+    about = {
+        "labels": ";".join(text for _, text in replies),
+        "kinds": ";".join(kind for kind, _ in replies),
+        "sentences": digest(sources),
+        "before": "1",
+        "said": "1",
+    }
     write(torch, made, OUT, len(LAYERS[BUNDLED]), ["grades", "likely"], about)
     return 0
 

@@ -13,11 +13,11 @@ import numpy as np
 
 from ravestate.language.encoder import BUNDLED
 from ravestate.language.model import model_in
-from ravestate.language.network import BEFORE, EARLIER
+from ravestate.language.network import BEFORE, EARLIER, SAID
 
 SRC = Path(__file__).parents[2] / "src" / "ravestate"
 KEPT = 0.7
-"""The chance that a text is read together with the utterance before it. The network must also work without it."""
+"""The chance that a text is read together with each of the texts before it. The network must also work without them."""
 WIDTH = 384
 """The length of a token's vector after one layer."""
 HIDDEN = 128
@@ -36,6 +36,8 @@ class Row:
         self.marks = capitals[:longest]
         self.before: Row | None = None
         """The utterance before, in a talk."""
+        self.said: Row | None = None
+        """The agent's answer to the utterance before."""
         self.context = 0
         self.classes: list[int] = []
         self.denied: list[float] = []
@@ -54,7 +56,7 @@ def digest(files: Iterable[Path]) -> str:
 
 def batches(rows: Sequence[Row], size: int, order: random.Random) -> list[list[Row]]:
     """Return the rows in a new order, in batches of similar length, because padding costs time."""
-    ordered = sorted(rows, key=lambda row: len(_with_before(row)[1]) + order.random() * 4)
+    ordered = sorted(rows, key=lambda row: len(_with_earlier(row)[1]) + order.random() * 4)
     found = [ordered[at : at + size] for at in range(0, len(ordered), size)]
     order.shuffle(found)
     return found
@@ -62,7 +64,7 @@ def batches(rows: Sequence[Row], size: int, order: random.Random) -> list[list[R
 
 def padded(torch: Any, rows: Sequence[Row], *, noisy: bool = True) -> tuple[Any, Any, Any]:
     """Return the vectors, the marks and the lengths of some rows, perhaps with random noise against overfitting."""
-    parts = [_with_before(row) if torch.rand(1).item() < KEPT else (row.vectors, row.marks) for row in rows]
+    parts = [_with_earlier(row, lambda: torch.rand(1).item() < KEPT) for row in rows]
     longest = max(len(marks) for _, marks in parts)
     vectors = torch.zeros(len(rows), longest, rows[0].vectors.shape[1])
     marks = torch.zeros((len(rows), longest), dtype=torch.long)
@@ -75,12 +77,14 @@ def padded(torch: Any, rows: Sequence[Row], *, noisy: bool = True) -> tuple[Any,
     return vectors, marks, torch.tensor([len(marks) for _, marks in parts])
 
 
-def _with_before(row: Row) -> tuple[Any, list[int]]:
-    """Return the vectors and the marks of a text, after those of the utterance before it."""
-    if row.before is None:
-        return row.vectors, row.marks
-    earlier = row.before.vectors[:BEFORE]
-    return np.concatenate([earlier, row.vectors]), [EARLIER] * len(earlier) + row.marks
+def _with_earlier(row: Row, kept: Callable[[], bool] = lambda: True) -> tuple[Any, list[int]]:
+    """Return the vectors and the marks of a text, after those of the texts before it that `kept` chooses."""
+    vectors, marks = row.vectors, row.marks
+    for one, mark in ((row.said, SAID), (row.before, EARLIER)):
+        if one is not None and kept():
+            earlier = one.vectors[:BEFORE]
+            vectors, marks = np.concatenate([earlier, vectors]), [mark] * len(earlier) + marks
+    return vectors, marks
 
 
 def mixer(torch: Any, layers: int, marks: int = 2) -> Any:

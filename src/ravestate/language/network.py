@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import os
 import threading
+from collections.abc import Collection, Mapping
 from functools import lru_cache
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
@@ -21,9 +22,9 @@ if TYPE_CHECKING:
 
 
 BEFORE = 24
-"""The maximum number of tokens of the utterance before."""
-EARLIER = 2
-"""The mark of a token of the utterance before."""
+"""The maximum number of tokens of the utterance before, and of the agent's answer to it."""
+EARLIER, SAID = 2, 3
+"""The mark of a token of the utterance before, and of the agent's answer to it."""
 LATEST = 16
 """The number of texts whose vectors are kept, because several networks read one utterance."""
 
@@ -36,14 +37,17 @@ class Network:
 
         Args:
             file: An ONNX file. Its inputs are ``vectors`` (1, tokens, layers * 384), ``marks`` (1, tokens: 1 for a capital,
-                `EARLIER` for the utterance before) and perhaps ``context`` (1,). Its metadata has ``labels`` with
-                semicolons between them, and ``before`` (1) if it reads the utterance before.
+                `EARLIER` or `SAID` for what came before) and perhaps ``context`` (1,). Its metadata has ``labels`` with
+                semicolons between them. ``before`` is 1 if it reads the utterance before, and ``said`` is 1 if it reads
+                the agent's answer to that.
         """
         self._file = file
         self._lock = threading.Lock()
         self._session: Any = None
         self.labels: list[str] = []
-        self._reads_before = False
+        self.about: Mapping[str, str] = {}
+        """The metadata of the file."""
+        self._marks: Collection[int] = ()
 
     @property
     def loaded(self) -> bool:
@@ -84,12 +88,12 @@ class Network:
             labels = about["labels"]
         except Exception as error:  # the library has its own exceptions, with long messages
             raise PlatformError(f"the network {str(self._file)!r} is broken: install ravestate again") from error
-        self.labels = labels.split(";")
-        self._reads_before = about.get("before") == "1"
+        self.labels, self.about = labels.split(";"), about
+        self._marks = [mark for name, mark in (("before", EARLIER), ("said", SAID)) if about.get(name) == "1"]
         return session
 
     def run(
-        self, text: str, context: int | None = None, before: str = ""
+        self, text: str, context: int | None = None, before: str = "", said: str = ""
     ) -> tuple[list[tuple[int, int]], list[NDArray[Any]]]:
         """Return the span of each token in a text, and the outputs of the network for the text.
 
@@ -99,14 +103,16 @@ class Network:
                 network has no such input.
             before: The utterance before. If the network reads it, its tokens come first, and the outputs have more tokens
                 than the spans.
+            said: The agent's answer to the utterance before. Its tokens come between the two.
         """
         import numpy as np
 
         spans, vectors = _vectors(text)
         marks = [int(start < end and text[start].isupper()) for start, end in spans]
-        if before and self._reads_before:
-            earlier = _vectors(before)[1][:BEFORE]
-            vectors, marks = np.concatenate([earlier, vectors]), [EARLIER] * len(earlier) + marks
+        for earlier, mark in ((said, SAID), (before, EARLIER)):
+            if earlier and mark in self._marks:
+                tokens = _vectors(earlier)[1][:BEFORE]
+                vectors, marks = np.concatenate([tokens, vectors]), [mark] * len(tokens) + marks
         given = {"vectors": vectors[None], "marks": np.array([marks])}
         if context is not None:
             given["context"] = np.array([context])

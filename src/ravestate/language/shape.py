@@ -47,11 +47,6 @@ def shape(text: str) -> tuple[bool, bool, bool, int]:
     return *mentioned, 0
 
 
-def opens_question(text: str) -> bool:
-    """Return whether a plain text begins with a question word or an auxiliary verb, as questions do."""
-    return text.split(" ", 1)[0] in _QUESTION_WORDS | _AUXILIARIES
-
-
 def likeness(texts: NDArray[np.int8], others: NDArray[np.int8]) -> NDArray[np.float32]:
     """Compare the shapes of n texts, (n, 4), with the shapes of m others, (m, 4).
 

@@ -1,8 +1,5 @@
 """`idle` notices silence and delay at the right moment of virtual time."""
 
-import re
-from pathlib import Path
-
 import pytest
 
 import ravestate as rs
@@ -272,8 +269,3 @@ def test_by_default_the_agent_is_bored_after_a_silence_of_about_15_seconds() -> 
         assert sim.said == []
         sim.advance(2.0)
         assert sim.said == ["Are you still there?"]
-
-
-def test_the_module_offers_every_name_that_its_readme_lists() -> None:
-    readme = Path(idle.__file__ or "").with_name("README.md").read_text(encoding="utf-8")
-    assert set(re.findall(r"`idle\.(\w+)`", readme)) <= set(idle.__all__)

@@ -10,6 +10,7 @@ import pytest
 
 import ravestate as rs
 from ravestate.engine.trace import Set
+from ravestate.errors import PlatformError
 from ravestate.modules import nlp, rawio
 from ravestate.modules.meta.nlp import rules
 from ravestate.modules.meta.nlp.analysis import analyse
@@ -262,3 +263,24 @@ def test_importing_the_module_imports_no_heavy_library() -> None:
     code = "import sys; from ravestate.modules import nlp; print('spacy' in sys.modules, 'numpy' in sys.modules)"
     done = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=True)
     assert done.stdout == "False False\n"
+
+
+def test_the_first_text_waits_for_the_models(monkeypatch: pytest.MonkeyPatch) -> None:
+    done: list[str] = []
+
+    def analysis(*given: Any) -> Any:
+        done.append("analysed")
+        return analyse(*given)
+
+    monkeypatch.setattr(rules, "load_models", lambda: done.append("loaded"))
+    monkeypatch.setattr(rules, "analyse", analysis)
+    rules.analysed("hi, I'm Nora", Pipeline(""), (), (), None)
+    assert done == ["loaded", "analysed"]
+
+
+def test_without_the_models_texts_are_still_analysed(monkeypatch: pytest.MonkeyPatch) -> None:
+    def missing() -> None:
+        raise PlatformError("the sentence models are not installed")
+
+    monkeypatch.setattr(rules, "load_models", missing)
+    assert rules.analysed("hello", Pipeline(""), (), (), None).acted == ("intent_hi",)

@@ -15,6 +15,7 @@ from ravestate.language.feelings import clauses, feelings
 from ravestate.language.matcher import Match, Matcher, bundled_matcher
 from ravestate.language.moves import Move, bundled_moves, compared
 from ravestate.language.normal import Normal
+from ravestate.language.replies import replies
 from ravestate.language.sentences import sentences as sentences_of
 
 from .answer import YesNo, answers, yesno_of
@@ -37,6 +38,8 @@ _SECOND_PERSON = word_set("you your yours yourself u ur")
 INTENTS = {"play": "intent_play", "greeting": "intent_hi", "farewell": "intent_bye"}
 """Act of the user → the name of nlp's signal for this act. Other acts have no signal."""
 
+LEAVING = 0.07
+"""The minimum probability that a farewell suits as a reply. Below, the utterance is no farewell."""
 MATCHERS = ("acts", "feelings", "asks")
 """The names of the files of examples with which an analysis compares the user's sentences."""
 
@@ -140,6 +143,7 @@ def load_models() -> None:
     answers().load()
     kinds().load()
     bundled_moves().load()
+    replies().load()
 
 
 def analyse(
@@ -197,13 +201,20 @@ def analyse(
         statements=statements,
         contrasts=contrasts_of(repaired(tree)),
         closing=closing,
-        acts=acts(sentences),
+        acts=_meant(acts(sentences), normal.unguessed),
         feelings=feelings(sentences, names),
         asks=_by_name(bundled_matcher("asks").match_all(sentences)),
         move=bundled_moves().move(meant, asks=question is not None or "?" in text),
         questions=tuple(analyse(one, pipeline, names, users) for one in questions_in(tree)),
         intents=_by_name(designed.match_all(sentences or (text,)), ":") if designed else {},
     )
+
+
+def _meant(found: dict[str, Match], text: str) -> dict[str, Match]:
+    """Return the acts without a farewell that calls for no farewell: *so that's gone now*."""
+    if "farewell" in found and replies().loaded and replies().kinds(text).get("leaves", 0.0) < LEAVING:
+        return {name: act for name, act in found.items() if name != "farewell"}
+    return found
 
 
 def _by_name(matches: Iterable[Match | None], part: str = "") -> dict[str, Match]:

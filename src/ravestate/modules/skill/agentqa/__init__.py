@@ -5,7 +5,7 @@ from __future__ import annotations
 from . import rules as rules
 from .life import Life, Topic
 from .life_file import read_life
-from .names import Settings, asked, clock, life, module, mood, prompted, remarked
+from .names import Settings, asked, clock, life, module, mood, prompted, remarked, turns
 from .remarks import Remark
 from .router import Match, Router
 
@@ -24,4 +24,5 @@ __all__ = [
     "prompted",
     "read_life",
     "remarked",
+    "turns",
 ]

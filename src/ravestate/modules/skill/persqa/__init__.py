@@ -3,8 +3,21 @@
 from __future__ import annotations
 
 from . import rules as rules
-from .names import Settings, facts, forgotten, module, reply, talk, told, who
+from .names import Settings, facts, forgotten, module, noted, reply, talk, told, who
 from .talk import Question, Talk
 from .told import Told
 
-__all__ = ["Question", "Settings", "Talk", "Told", "facts", "forgotten", "module", "reply", "talk", "told", "who"]
+__all__ = [
+    "Question",
+    "Settings",
+    "Talk",
+    "Told",
+    "facts",
+    "forgotten",
+    "module",
+    "noted",
+    "reply",
+    "talk",
+    "told",
+    "who",
+]

@@ -5,6 +5,19 @@ from __future__ import annotations
 from ravestate.language.chat import Backend, Message
 
 from . import rules as rules
-from .names import Settings, clock, history, listening, model, module, notes, trouble
+from .names import Settings, chosen, clock, history, listening, model, module, notes, overheard, trouble
 
-__all__ = ["Backend", "Message", "Settings", "clock", "history", "listening", "model", "module", "notes", "trouble"]
+__all__ = [
+    "Backend",
+    "Message",
+    "Settings",
+    "chosen",
+    "clock",
+    "history",
+    "listening",
+    "model",
+    "module",
+    "notes",
+    "overheard",
+    "trouble",
+]

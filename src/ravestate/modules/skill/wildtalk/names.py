@@ -96,7 +96,7 @@ listening: rs.Slot[State] = module.slot("listening", State(), type=State)
 """The memory of the listening skill: the last phrases, the tone, opinions, a game."""
 
 overheard: rs.Slot[tuple[Overheard, ...]] = module.slot("overheard", ())
-"""The tone and the persons of the last utterances, including those that other modules answered."""
+"""The tones of the last utterances, including those that other modules answered."""
 
 notes: rs.Collection[str] = module.collection("notes", input=True)
 """Notes of other modules about the user and the situation: short sentences for the prompt, such as ``The user lives in Rome.``"""

@@ -134,10 +134,7 @@ async def keep_heard(ctx: rs.RuleContext) -> rs.Resign | None:
 
 @module.rule(when=nlp.analysis.changed.max_age(None).detached(), reads=listening, writes=overheard, background=True)
 def overhear(ctx: rs.RuleContext) -> rs.Resign | None:
-    """Note the tone of every utterance, and the person or animal that it mentions.
-
-    The rule also notes utterances that other modules answer.
-    """
+    """Note the tone of every utterance, also of those that other modules answer."""
     seen = ctx.payload(nlp.analysis.changed)
     if seen is None:
         return rs.Resign("nothing was analysed")
@@ -281,7 +278,7 @@ async def comfort(ctx: rs.RuleContext) -> rs.Resign | None:
     if not (isinstance(backend, ListeningBackend) or await asyncio.to_thread(skill.performs, heard, State())):
         return rs.Resign("a language model answers")
     suits = await asyncio.to_thread(claims, heard, state) or await asyncio.to_thread(needs_comfort, seen)
-    if not (suits or await asyncio.to_thread(is_known, seen)):
+    if not (suits or await asyncio.to_thread(is_known, seen, state)):
         return rs.Resign("no known reply suits")
     ctx[rawio.output] = await listen(ctx, heard)
     return None

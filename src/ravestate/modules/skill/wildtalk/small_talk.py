@@ -31,7 +31,7 @@ MENTIONED = 4
 SORROWFUL = frozenset(("console", "mourn"))
 """Moves (next steps of a good listener) in reply to a sorrow."""
 OVERHEARD = 6
-"""The number of latest utterances whose tone and persons are kept in `overheard`."""
+"""The number of latest utterances whose tone is kept in `overheard`."""
 
 _TONES = {
     "sad": "The user is sad. Be gentle and brief.",
@@ -97,7 +97,7 @@ def may_need_comfort(seen: nlp.Analysis) -> bool:
 
 def needs_comfort(seen: nlp.Analysis) -> bool:
     """Return whether the user is in sorrow, by the feeling and the likely move. Use a thread: this takes 10 ms."""
-    return may_need_comfort(seen) and listener().overhear(seen, None).tone == "sad"
+    return may_need_comfort(seen) and listener().overhear(seen).tone == "sad"
 
 
 def may_claim(seen: nlp.Analysis) -> bool:
@@ -120,10 +120,10 @@ def may_be_known(seen: nlp.Analysis) -> bool:
     return not (seen.yesno and len(seen.text.split()) <= SHORT)
 
 
-def is_known(seen: nlp.Analysis) -> bool:
+def is_known(seen: nlp.Analysis, state: State) -> bool:
     """Return whether the listening skill has a reply to such words. Use a thread: this takes 10 to 60 ms."""
     skill = listener()
-    return may_be_known(seen) and skill.knows(seen, roughly=True) and skill.knows(seen)
+    return may_be_known(seen) and skill.knows(seen, state)
 
 
 async def listen(ctx: rs.RuleContext, heard: Heard) -> str:
@@ -157,10 +157,8 @@ def _answer(heard: Heard, state: State, chance: random.Random) -> Answer:
 
 
 def is_open(state: State) -> bool:
-    """Return whether the skill expects something: a turn in a game, an answer to its question, or a follow-up."""
-    if state.game is not None or state.pending is not None:
-        return True
-    return bool(state.moment or state.thread) and listener().expects(state)  # `expects` reads the phrases first
+    """Return whether the skill expects something: a turn in a game, or an answer to its question."""
+    return state.game is not None or state.pending is not None
 
 
 async def follow_up(ctx: rs.RuleContext, heard: Heard) -> str:
@@ -182,20 +180,19 @@ def up_to_date(ctx: rs.RuleContext, text: str) -> State:
     answered = [place for place, one in enumerate(since) if one.text == state.before]
     for one in since[answered[-1] + 1 :] if answered else since:
         if one.text != text:
-            state = replace(state.toned(one.tone, one.lasts), being=one.being or state.being, before=one.text)
+            state = replace(state.toned(one.tone, one.lasts).warned(one.text), before=one.text)
     answers = [message.text for message in ctx[history].values() if message.role == "assistant"]
     words = [answer for answer in answers if any(map(str.isalpha, answer))]
     if words and words[-1:] != list(state.said[-1:]):  # another module has answered since
         asked = Pending(words[-1]) if words[-1].endswith("?") else None
         game = None if state.game is None else state.game.beside(words[-1])
-        thread = "" if asked else state.thread  # "yes" now answers the other module's question
-        state = replace(state.having_said(words[-1], words[-1]), pending=asked, moment="", thread=thread, game=game)
+        state = replace(state.having_said(words[-1], words[-1]), pending=asked, game=game)
     return state
 
 
 def traces(ctx: rs.RuleContext, seen: nlp.Analysis) -> tuple[Overheard, ...]:
-    """Return the tone and person of each of the last utterances, newest last. Any module may have answered them."""
-    return (*ctx[overheard][1 - OVERHEARD :], listener().overhear(seen, ctx[listening].being))
+    """Return the tone of each of the last utterances, newest last. Any module may have answered them."""
+    return (*ctx[overheard][1 - OVERHEARD :], listener().overhear(seen))
 
 
 def gate_for(ctx: rs.RuleContext, name: str, heard: str) -> Gate:

@@ -13,9 +13,7 @@ from ravestate.modules.meta.nlp.analysis import Analysis, analyse
 from ravestate.modules.meta.nlp.inquiry import kinds
 from ravestate.modules.meta.nlp.pipeline import pipeline
 from ravestate.modules.skill.wildtalk.listening import Heard, Listener, State
-from ravestate.modules.skill.wildtalk.listening.bank import Bank
-from ravestate.modules.skill.wildtalk.listening.material import Material, material
-from ravestate.modules.skill.wildtalk.listening.moment import Line, Moment
+from ravestate.modules.skill.wildtalk.listening.phrases import Line, Phrases
 
 
 class Talk:
@@ -36,14 +34,6 @@ class Talk:
 def seen(text: str) -> Analysis:
     """Return the analysis of a text."""
     return analyse(text, pipeline(""), ("Ravestate",))
-
-
-def listener_with(bank: Bank) -> Listener:
-    """Return a listener with the built-in phrases and another bank."""
-    phrases = object.__new__(Material)
-    phrases.__dict__.update(material().__dict__)
-    phrases.bank = bank
-    return Listener(phrases)
 
 
 @pytest.fixture(scope="session", autouse=True)
@@ -67,5 +57,5 @@ def talk() -> Talk:
     return Talk()
 
 
-def lines_of(moment: Moment) -> list[Line]:
-    return [line for lines in moment.groups.values() for line in lines]
+def lines_of(phrases: Phrases) -> list[Line]:
+    return [line for lines in phrases.groups.values() for line in lines]

@@ -190,3 +190,34 @@ def test_the_agent_thinks_of_an_animal_and_answers_questions_about_it(talk: Any)
 def test_the_agent_guesses_the_animal_that_the_user_thinks_of(talk: Any) -> None:
     talk.say("now I think of an animal and you have to find it")
     assert talk.state.game.kind == "animal"
+
+
+@pytest.mark.parametrize(
+    "text",
+    [
+        "they all already have jokes",
+        "I have an animal shelter in my street",
+        "her doctor tells her a joke before each jab",
+        "an old lady asked us to sing for her cat",
+        "the article says that machines will tell fairy tales to our kids",
+        "my neighbour knows a riddle for each door",
+    ],
+)
+def test_talk_about_performances_starts_none(text: str, talk: Any) -> None:
+    talk.say(text)
+    assert talk.state.game is None
+    assert not talk.state.shown
+
+
+def test_a_joke_but_no_knock_knock_joke_is_told(talk: Any) -> None:
+    assert talk.say("tell me a joke, but no knock knock joke") in shows()["told"]["joke"]
+
+
+@pytest.mark.parametrize("seed", range(6))
+def test_approval_of_a_song_is_no_acceptance_of_an_offer(seed: int, begin: Callable[[int], Any]) -> None:
+    talk = begin(seed)
+    for _ in range(len(shows()["told"]["song"])):
+        talk.say("sing a song")
+        heard = talk.state.shown
+        talk.say("yes, I will bring my ears along tomorrow")
+        assert talk.state.shown == heard

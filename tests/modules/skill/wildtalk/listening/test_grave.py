@@ -9,9 +9,9 @@ import pytest
 from ravestate.modules.skill.wildtalk.listening import Heard
 from ravestate.modules.skill.wildtalk.listening.grave import is_crisis, is_grave
 from ravestate.modules.skill.wildtalk.listening.material import material
-from ravestate.modules.skill.wildtalk.listening.tones import DARK
+from ravestate.modules.skill.wildtalk.listening.responses import LIGHT as LIGHTLY
 
-from .conftest import Talk, seen
+from .conftest import Talk, lines_of, seen
 
 LIGHT = [
     "we played board games", "my grandparents met on a train", "i made dinner", "i won a raffle", "tell me a joke",
@@ -28,13 +28,12 @@ GRAVE = [
 def test_a_grave_remark_in_a_light_conversation_gets_no_light_follow_up(
     remark: str, begin: Callable[[int], Talk]
 ) -> None:
-    bank = material().bank
+    kinds = {line.text: kind for kind in material().responses.values() for line in lines_of(kind)}
     for seed, light in enumerate(LIGHT):
         talk = begin(seed)
         talk.say(light)
-        talk.say(remark)
-        entry = bank.named.get(talk.state.moment)
-        assert entry is None or entry.tone in DARK, (light, remark, talk.state.said[-1])
+        said = talk.say(remark)
+        assert said not in kinds or kinds[said].tone not in LIGHTLY, (light, remark, said)
 
 
 def test_harmless_words_are_not_grave() -> None:
@@ -62,7 +61,7 @@ def test_the_listener_leaves_words_of_danger_to_other_modules(begin: Callable[[i
     talk.say("we played board games")
     for danger in ("i have nothing to live for", "i want to die", "i'd rather not wake up", "i took too many pills"):
         assert is_crisis(danger)
-        assert not talk.listener.knows(seen(danger))
+        assert not talk.listener.knows(seen(danger), talk.state)
         assert not talk.listener.continues(Heard(danger, seen(danger)), talk.state)
 
 
@@ -85,3 +84,56 @@ def test_illness_without_a_question_gets_sympathy_and_no_referral(begin: Callabl
 @pytest.mark.parametrize("text", ["it is so dead here tonight", "i am half dead", "i am just killing time"])
 def test_a_grave_word_in_a_harmless_phrase_is_not_grave(text: str) -> None:
     assert not is_grave(text)
+
+
+EMERGENCIES = [
+    "she is choking", "i swallowed bleach", "my daughter swallowed a battery", "there is a fire in my kitchen",
+    "i can't breathe", "i've been stabbed", "my chest hurts", "he just collapsed", "somebody is breaking in",
+]  # fmt: skip
+
+
+@pytest.mark.parametrize("danger", EMERGENCIES)
+def test_danger_to_life_gets_the_emergency_number(danger: str, talk: Talk) -> None:
+    assert "emergency number" in talk.say(danger)
+
+
+@pytest.mark.parametrize("game", ["knock knock", "tell me a riddle", "i am thinking of an animal"])
+@pytest.mark.parametrize("grave", ["i want to kill myself", "my mother died"])
+def test_a_grave_remark_ends_a_game(game: str, grave: str, talk: Talk) -> None:
+    talk.say(game)
+    said = talk.say(grave)
+    assert talk.state.game is None
+    assert "who?" not in said
+    assert "call" in said.lower() or "ring" in said.lower() or grave == "my mother died"
+
+
+def test_after_words_of_danger_the_listener_tells_no_joke_and_answers_a_farewell_with_help(talk: Talk) -> None:
+    talk.say("i am going to hurt myself")
+    assert talk.say("tell me a joke") not in material().shows["told"]["joke"]
+    assert "call" in talk.say("goodbye").lower() or "ring" in talk.state.said[-1].lower()
+
+
+def test_a_joke_with_a_threat_is_no_request(talk: Talk) -> None:
+    assert talk.say("tell me a joke or i will kill myself") not in material().shows["told"]["joke"]
+
+
+def test_in_a_sad_conversation_nothing_gets_a_funny_reply(begin: Callable[[int], Talk]) -> None:
+    kinds = {line.text: kind for kind in material().responses.values() for line in lines_of(kind)}
+    for seed in range(3):
+        talk = begin(seed)
+        talk.say("my mother died")
+        for text in ("the nurses were wonderful", "we laughed a lot", "he fell off his chair", "haha"):
+            said = talk.say(text)
+            assert said not in kinds or kinds[said].tone != "funny", said
+
+
+def test_good_news_in_a_sad_conversation_gets_no_condolence(talk: Talk) -> None:
+    kinds = {line.text: kind for kind in material().responses.values() for line in lines_of(kind)}
+    talk.say("my father is in a coma")
+    said = talk.say("I got the job, I am so happy!")
+    assert said not in kinds or kinds[said].tone != "sad", said
+
+
+@pytest.mark.parametrize("text", ["he swallowed his pride", "the party was on fire", "i have a knife set for sale"])
+def test_harmless_words_are_no_emergency(text: str) -> None:
+    assert not is_crisis(text)

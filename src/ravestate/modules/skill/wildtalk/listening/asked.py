@@ -8,24 +8,27 @@ parse: the options of a choice, the thing that the question is about, and questi
 from __future__ import annotations
 
 import re
+import threading
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 
 from ravestate.language.contractions import word_set
 from ravestate.language.feelings import SORROWS
 from ravestate.language.moves import LISTENING
+from ravestate.language.reranker import Reranker
 from ravestate.modules.meta.nlp.analysis import Analysis
 from ravestate.modules.meta.nlp.question_word import AUXILIARIES, QUESTION_WORDS, QuestionWord
 from ravestate.modules.meta.nlp.tree import SUBJECTS, Tree, Word
 
-from .bank import ANSWER, EXACTLY
-from .echo import words_of, wraps
-from .highlight import highlight_in
+from .asking import words_of
 from .material import Material
-from .moment import Line, Moment
+from .phrases import Line, Phrases
 from .roles import turned
 from .state import State
 
+ANSWER, EXACTLY = -10.3, -8.6
+"""The minimum scores (logits) of answers: of advice, which suits many questions, and of answers that must be exact. An
+answer to another question from the same area of life scores -10 to -11."""
 SURE, ORDERED, UNASKED = 0.4, 0.6, 0.8
 """The minimum confidence in the kind of a question, of an order, and of any other utterance."""
 ALIKE: Mapping[str, tuple[str, ...]] = {
@@ -43,6 +46,8 @@ OWN = word_set("about_you would_you favourite")
 """Kinds that ask about the agent."""
 _WRAPPING = word_set("know tell explain say think believe guess suppose recommend help show give")
 _YOU = word_set("you your yours yourself u ur")
+_POLITE = word_set("think know believe say tell guess suppose reckon")
+"""Verbs that only introduce a question: *how old do you think he is*."""
 BY_MOVE = {"advice": "how_to", "opinion": "you_think"}
 """Move → the kind of a question, if the classifier finds no kind."""
 LEAST_WRAPPED = 4
@@ -96,7 +101,7 @@ class Asked:
 
     kind: str
     """The question's class in asks.yaml."""
-    area: Moment | None
+    area: Phrases | None
     values: Mapping[str, str]
     """The values of the roles: ``first`` and ``second``, ``about``, ``word``, ``short``, ``picked``."""
     groups: tuple[str, ...]
@@ -115,8 +120,30 @@ class Asked:
         named = [self.area.name] if self.area else []
         first = general.lines("picked") if "picked" in self.groups else []
         least = EXACTLY if self.kind in EXACT else ANSWER
-        own = [[line] for lines in self.own for line in phrases.bank.answering(question, lines, least)]
+        own = [[line] for lines in self.own for line in answering(question, lines, least)]
         return [*first, *own, *general.lines(*named, tone, *self.groups, "say")]
+
+
+def answering(question: str, lines: Sequence[Line], least: float = ANSWER) -> list[Line]:
+    """Return the lines that may answer a question, the likeliest first; before `load_judge`, all lines in their order."""
+    if not _ready.is_set() or not lines or not question:
+        return list(lines)
+    scores = _judge.score_pairs([(question, line.text) for line in lines]).tolist()
+    ranked = sorted(zip(scores, lines, strict=True), key=lambda one: -one[0])
+    return [line for score, line in ranked if score >= least]
+
+
+def load_judge() -> None:
+    """Load the cross-encoder, which scores the answers.
+
+    Raises:
+        PlatformError: The model is missing or broken.
+    """
+    _judge.load()
+    _ready.set()
+
+
+_judge, _ready = Reranker(), threading.Event()
 
 
 def asked_in(
@@ -180,7 +207,7 @@ def asked_in(
     values = {
         "first": options[0] if options else "",
         "second": options[1] if options else "",
-        "about": _named(seen, words) or about(phrases, seen.tree, words),
+        "about": about(phrases, seen.tree, words),
         "word": _word(seen) if kind in WORDING else "",
         "last": last,
         "short": re.split(r"(?<=[.!?]) |, (?=and|but|or|so)", last)[0].rstrip(",") if last else "",
@@ -202,7 +229,7 @@ def _asks_agent(words: Sequence[Word]) -> bool:
     return first in AUXILIARIES and second in _YOU and third not in _WRAPPING
 
 
-def area_of(phrases: Material, tree: Tree, words: Sequence[Word], kind: str) -> Moment | None:
+def area_of(phrases: Material, tree: Tree, words: Sequence[Word], kind: str) -> Phrases | None:
     """Return the area of life of a question, by its main verb and nouns, or else by the rest of the utterance.
 
     Args:
@@ -241,11 +268,15 @@ def about(phrases: Material, tree: Tree, words: Sequence[Word]) -> str:
     return ""
 
 
-def _named(seen: Analysis, words: Sequence[Word]) -> str:
-    """Return the phrase of a question that carries most information; empty if none stands out."""
-    nouns = [word for word in words if word.pos != "ADJ" or word.dep == "amod"]
-    found = highlight_in(seen, nouns, asked=True)
-    return "" if found is None else found.text
+def wraps(words: Sequence[Word]) -> bool:
+    """Return whether the first three words only introduce a question: *do you think he*, *can you tell me*."""
+    first, second, third, after = words
+    wraps = first.tag in ("MD", "VBP", "VBD") and second.low in _YOU and third.lemma.lower() in _POLITE
+    if third.lemma.lower() in ("say", "tell"):
+        return wraps and after.low in ("me", "us")  # not "would you tell him?"
+    if third.lemma.lower() == "know":
+        return wraps and after.low in {*QUESTION_WORDS, "if", "whether"}  # not "do you know any songs?"
+    return wraps and after.low not in ("about", "of") and after.pos != "PROPN"
 
 
 def _left(tree: Tree, part: Word, noun: Word) -> bool:

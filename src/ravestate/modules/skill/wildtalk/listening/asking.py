@@ -5,13 +5,20 @@ from __future__ import annotations
 import re
 from functools import lru_cache
 
+from ravestate.language.contractions import word_set
 from ravestate.language.matcher import bundled_matcher
 from ravestate.modules.meta.nlp.analysis import Analysis
 from ravestate.modules.meta.nlp.question_word import QuestionWord
+from ravestate.modules.meta.nlp.tree import SUBJECTS, Tree, Word
 
-from .echo import ASKING, is_astonished
 from .turns import is_cry, is_news
 
+ASKING = word_set("who what when where why which how whose do does did is are was can could will would should may have")
+"""Function words that begin a question."""
+_ASKED = word_set(
+    "who what when where why which how whose whether if or you your right correct yes no ok okay huh eh innit"
+)
+"""Last words of questions that are worded like a statement: *you are not mad, are you?*, *is correct, yes?*"""
 FEW_WORDS = 3
 """The maximum number of words of a short sentence. Short sentences resemble many others."""
 SHORT = 4
@@ -73,3 +80,24 @@ def kind_of(sentence: str) -> str:
     """Return the kind of a question or request; empty for a statement."""
     match = bundled_matcher("asks").match(sentence)
     return "" if match is None else match.name
+
+
+def is_astonished(seen: Analysis, sentence: str) -> bool:
+    """Return whether a sentence is a statement about others with a question mark: *he says it relaxes them??*"""
+    words = [word for word in words_of(seen.tree, sentence) if word.pos not in ("PUNCT", "INTJ", "CCONJ")]
+    low = [word.low for word in words]
+    if low[-2:] == ["you", "know"] and len(low) > 4:  # "it's been a bad week, you know?"
+        return True
+    if len(low) < 4 or low[0] in ASKING or not _ASKED.isdisjoint(low):
+        return False
+    subject = next((word for word in words if word.dep in SUBJECTS), None)
+    verb = None if subject is None else seen.tree.head(subject)
+    helpers = [] if verb is None else [verb, *seen.tree.children(verb, "aux", "auxpass")]
+    return subject is not None and all(word.index > subject.index for word in helpers)
+
+
+def words_of(tree: Tree, sentence: str) -> list[Word]:
+    """Return the words of a sentence; if the text does not contain this sentence, all words of the text."""
+    start = tree.text.lower().find(sentence.lower().rstrip(".!?")) if sentence else 0
+    end = start + len(sentence) if sentence and start >= 0 else len(tree.text)
+    return [word for word in tree.words if max(start, 0) <= word.start < end]

@@ -36,14 +36,24 @@ def is_medical(text: str) -> bool:
     return _patterns()[2].search(plain(text)) is not None
 
 
+def is_emergency(text: str) -> bool:
+    """Return whether a text has words of danger to life.
+
+    Example:
+        >>> is_emergency("She is choking!"), is_emergency("My dog died.")
+        (True, False)
+    """
+    return _patterns()[3].search(plain(text)) is not None
+
+
 def is_crisis(text: str) -> bool:
-    """Return whether a text has words of a person who may be in danger.
+    """Return whether a text has words of a person who may be in danger, or of danger to life.
 
     Example:
         >>> is_crisis("I have nothing to live for"), is_crisis("My dog died.")
         (True, False)
     """
-    return _patterns()[1].search(plain(text)) is not None
+    return _patterns()[1].search(plain(text)) is not None or is_emergency(text)
 
 
 _LIVELY = re.compile(
@@ -55,10 +65,10 @@ _LIVELY = re.compile(
 
 
 @cache
-def _patterns() -> tuple[re.Pattern[str], re.Pattern[str], re.Pattern[str]]:
+def _patterns() -> tuple[re.Pattern[str], ...]:
     table: Any = load_yaml((files(__package__ or "") / FILE).read_text(encoding="utf-8"), FILE)
     grave = [*table["words"].split(), *table["phrases"], *table["crisis"]]
-    return _any_of(grave), _any_of(table["crisis"]), _any_of(table["medical"])
+    return _any_of(grave), _any_of(table["crisis"]), _any_of(table["medical"]), _any_of(table["emergency"])
 
 
 def _any_of(expressions: list[str]) -> re.Pattern[str]:

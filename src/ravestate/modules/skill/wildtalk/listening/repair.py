@@ -30,7 +30,7 @@ _TOLD_TO = re.compile(r"\b(?:with|to) (?:my|a|the|him|her|them|somebody|some)\b|
 _REJECTS = re.compile(
     r"^(?:that|this|it) (?:is|was) (?:not (?:what|about|an answer|my|the)|(?:for |about )?(?:\w+ ){0,2}(?:advice|tip|answer|question"
     r"|line|reply|recipe)\b|(?:about|for) (?P<of>\w+)(?: \w+)?$)"
-    r"|^i (?:did not|was not|never|do not) (?:\w+ )?(?:ask|asking|mean|talk|talking|speak|speaking|(?:say|said)(?! (?:anything|nothing|a word|much)))\b"
+    r"|^i (?:did not|was not|never|do not) (?:\w+ )?(?:ask|asking|mean|talk|talking|speak|speaking|(?:say|said)(?! (?:anything|nothing|a word|much|(?:\w+ )?to (?:any|no)(?:one|body))))\b"
     r"|^you (?:misunderst|got (?:me|it|that) wrong|are not listening|did not answer|ignored)"
     r"|^(?:that|this|it) (?:makes|made) no sense|^(?:you are|that is) (?:off|beside) "
 )

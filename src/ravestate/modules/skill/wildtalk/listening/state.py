@@ -5,25 +5,16 @@ from __future__ import annotations
 from collections.abc import Mapping
 from dataclasses import dataclass, field, replace
 
+from .grave import is_crisis
+
 RECENT = 40
 """The number of latest phrases that the agent does not repeat."""
+DANGER = 5
+"""The number of turns for which the user may be in danger, after words of danger."""
 LASTING = 2
 """The number of turns for which a tone lasts."""
 
 _OPEN = frozenset(("who", "what", "what's", "when", "where", "why", "which", "how", "whose", "or"))
-
-
-@dataclass(frozen=True, slots=True)
-class Being:
-    """A person or an animal that was mentioned."""
-
-    text: str
-    """The words for the being, from the agent's view: ``your mother``, ``Rex``."""
-    kind: str = ""
-    """``relative``, ``pet`` or ``person``."""
-    gender: str = "n"
-    """``f``, ``m`` or ``n``."""
-    plural: bool = False
 
 
 @dataclass(frozen=True, slots=True)
@@ -45,10 +36,9 @@ class Pending:
 
 @dataclass(frozen=True, slots=True)
 class Overheard:
-    """The tone of an utterance, and the person or animal that it mentions, kept even if another module answers."""
+    """The tone of an utterance, kept even if another module answers."""
 
     text: str
-    being: Being | None = None
     tone: str = ""
     lasts: int = LASTING
 
@@ -84,19 +74,12 @@ class State:
     """The last answers, oldest first."""
     before: str = ""
     """The user's previous utterance."""
-    ground: str = ""
-    """The user's last statement, from the agent's view. The agent names it as the reason for its advice."""
-    moment: str = ""
-    """The name of the feeling, or of the *moment* (a situation in a conversation), that the last answer was for."""
-    thread: str = ""
-    """The bank's entry that gave the last reply from the bank; empty after several answers from elsewhere."""
-    away: int = 0
-    """The number of answers since the last reply from the bank."""
     pending: Pending | None = None
-    being: Being | None = None
     tone: str = ""
     turns: int = 0
     """The number of turns for which the tone still lasts."""
+    danger: int = 0
+    """The number of turns for which the user may still be in danger."""
     stances: Mapping[str, str] = field(default_factory=dict[str, str])
     """The agent's opinions. It chooses each opinion once, and then keeps it."""
     game: Game | None = None
@@ -113,13 +96,15 @@ class State:
     """Whether the listener may ask questions. False after the user has asked for no more questions."""
 
     def toned(self, tone: str, lasts: int = LASTING) -> State:
-        """Return the state after an utterance with this tone. Anger and tiredness do not end sadness."""
-        if self.tone == "sad" and tone in ("angry", "tired"):
-            tone, lasts = "sad", self.turns
-        if tone:
-            return replace(self, tone=tone, turns=max(lasts, self.turns - 1) if tone == self.tone else lasts)
+        """Return the state after an utterance with this tone. No other tone ends sadness."""
         left = max(0, self.turns - 1)
+        if tone and (self.tone != "sad" or tone == "sad" or not left):
+            return replace(self, tone=tone, turns=max(lasts, left) if tone == self.tone else lasts)
         return replace(self, tone=self.tone if left else "", turns=left)
+
+    def warned(self, text: str) -> State:
+        """Return the state after an utterance, which may have words of danger."""
+        return replace(self, danger=DANGER if is_crisis(text) else max(0, self.danger - 1))
 
     def having_said(self, template: str, text: str) -> State:
         """Return the state after the agent's answer."""

@@ -1,10 +1,8 @@
-"""Turns that patterns recognise: news or a complaint in the form of a question, harsh words of users about themselves,
-and a farewell."""
+"""Turns that patterns recognise: news or a complaint in the form of a question, and a farewell."""
 
 from __future__ import annotations
 
 import re
-from collections.abc import Sequence
 
 LONGEST = 400
 """The maximum number of characters that are read: the patterns take time that grows with the square of the length."""
@@ -28,23 +26,6 @@ _LEAVING = re.compile(
     re.IGNORECASE,
 )
 """A farewell at the end of an utterance: *I have to go now, bye!*, *have a nice day*."""
-
-_REPROACH = re.compile(
-    r"\b(?:i am|i'm|im|i feel|i felt|i was|me feel)(?: \w+){0,3} (?:dumb|stupid|idiot|idiotic|useless|worthless|failure|loser|pathetic"
-    r"|hopeless|fool|foolish|clumsy|rubbish)\b|\blike an? (?:idiot|fool|moron)\b",
-    re.IGNORECASE,
-)
-"""Harsh words of users about themselves."""
-
-
-def turns_in(text: str, sentences: Sequence[str]) -> list[str]:
-    """Return the names of the turns that an utterance with these sentences is: ``news``, ``cry`` and ``reproach``."""
-    found = {
-        "news": bool(sentences) and is_news(sentences[-1]),
-        "cry": is_cry(text),
-        "reproach": bool(_REPROACH.search(text)),
-    }
-    return [name for name, holds in found.items() if holds]
 
 
 def is_news(text: str) -> bool:

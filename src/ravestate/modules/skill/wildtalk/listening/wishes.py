@@ -8,41 +8,27 @@ from dataclasses import dataclass
 from typing import Any
 
 from ravestate.language.contractions import word_set
+from ravestate.language.matcher import Match
 from ravestate.modules.meta.nlp.analysis import Analysis
 from ravestate.modules.meta.nlp.tree import Tree, Word
 
 from .state import State
 
 LONGEST = 20
-"""The maximum number of words of a sentence that asks for a performance."""
+"""The maximum number of words of an utterance that accepts an offered performance; *another one* may have half as many."""
 MOST = 400
 """The maximum number of characters that are read: the patterns take time that grows with the square of the length."""
-BARE = 4
-"""The maximum number of words of a request without a verb: *a dino joke please*."""
 LATELY = 3
 """*Another one* asks for a performance only if one of this number of latest answers was a performance."""
+UNNAMED = 0.6
+"""The minimum confidence in a request that does not name its performance: *hit me with a good one*."""
 
+_SHARES = {"joke": ("knock",), "play": ("riddle", "chain", "animal")}
+"""An act, and the further performances for which it asks."""
 _HOLDER = re.compile(r"\b(?:think of|pick|choose) (?:an|some|any) animal\b")
 """The user asks the agent to think of an animal, which the user will guess."""
 _GUESSER = re.compile(r"\b(?:i|i'll|i will) (?:think of|pick|choose|have) (?:an|some|any) animal\b")
 """The user says that they think of an animal, which the agent will guess."""
-_WANTS = re.compile(
-    r"\b(?:tell|give|sing|hum|read|play|do|make up|invent|share|know|have|got|hear|want|wants|needs?|could use|fancy|promised|offered|asked for|make me|"
-    r"(?:then|instead)(?=\W*$)|let'?s|let us|(?:how|what) about|time for|any|another|more|please|i'd|would (?:like|love|rather|prefer|be))\b"
-)
-_OFFERS = re.compile(
-    r"\b(?:i|we|he|she|they)(?:'ve|'m)? (?:(?:just|always|once|also|really|never|don't) )?(?:have|had|got|know|knew|read|"
-    r"write|wrote|sing|sang|told|tell|heard|like|love|liked|loved|am|was|were|said|remember)\b"
-    r"|\bi (?:\w+ )?(?:want|need|have|would like|will|'ll) to (?:tell|ask|sing|read|write|play you)\b"
-    r"|\b(?:not|no|stop|without|enough of) (?:an?|the|that|this|your|any|more)? ?(?:joke|song|sing|singing|stor|riddle|poetry)"
-    r"|^\W*(?:how|why) (?:can|could|do|did|would|are|were) you\b"
-    r"|\b(?:used to|would always|loved to|liked to) (?:sing|tell|read|play|write)\b"
-    r"|\b(?:don't|didn't|do not|did not|never) (?:\w+ )?(?:ask|asked|want|wanted|need)\b(?!.*\b(?:but|instead|rather)\b)"
-    r"|\b(?:tell|ask|show|sing|read) you\b|\b(?:do|would) you (?:like|want) to hear\b|\bto hear (?:my|mine)\b|\bask you\b"
-    r"|\b(?:is|was|'s|are|were|been)(?: \w+)? an? (?:\w+ )?{noun}|\b(?:the|that|this|those|my|your|his|her|their|our|same"
-    r"|no|what a|(?<!let)(?<!today)(?<!it)'s) (?:\w+ )?{noun}|\byou (?:told|said|sang)\b|\byou like {noun}".replace("{noun}", r"(?:joke|stor|song|riddle|tale|pun)")
-)  # fmt: skip
-"""The user offers a joke or a story, or speaks about a particular one: *I know a joke*, *was that a joke?*."""
 _ANOTHER = re.compile(
     r"\b(?:another(?: one)?(?! (?!one\b|please\b|pls\b|but\b|about\b|with\b|if\b|then\b|again\b)\w)|(?:one|1) more|(?:a )?new one"
     r"|next one|(?:(?:some|any) )?more of (?:those|them|that)|one (?:about|with|on)|(?:some|any) more|more please|encore)\b"
@@ -84,21 +70,19 @@ class Wish:
     """The nouns of the subject in their base form."""
 
 
-def wish_in(shows: Mapping[str, Any], seen: Analysis, state: State, acts: Sequence[str] = ()) -> Wish | None:
+def wish_in(shows: Mapping[str, Any], seen: Analysis, state: State, acts: Sequence[Match] = ()) -> Wish | None:
     """Return the performance that an utterance asks for; None if it asks for none.
 
     Args:
         shows: The performances, and the words that ask for them.
         seen: The analysis of the utterance.
         state: The state of the conversation, for *another one*, and for an offer of the agent.
-        acts: The performances that the classifier of acts finds in the utterance.
+        acts: The requests for performances that the classifier of acts finds in the utterance, the likeliest first.
     """
     low = seen.text.lower()[:MOST]
-    if _GUESSER.search(low) or _HOLDER.search(low):
-        return Wish("animal" if _GUESSER.search(low) else "holder")
-    asked = seen.sentences if seen.closing is None or not seen.closing.remarks else (seen.closing.text,)
-    kind = next(filter(None, (_named(shows, sentence) for sentence in reversed(asked))), "")
-    offered = state.said[-1] if state.said and _OFFERED.search(state.said[-1]) else ""
+    kind = next(filter(None, (_asked(shows, act) for act in acts)), "")
+    shown = bool(state.shown) and state.said[-1].endswith(state.shown[-1])  # a song may sing "I have ..."
+    offered = state.said[-1] if state.said and not shown and _OFFERED.search(state.said[-1]) else ""
     accepted = offered and kinds_in(shows, offered) and not seen.yesno.no
     if accepted and not kind and len(low.split()) <= LONGEST:
         kind = next(iter((*kinds_in(shows, low), *(kinds_in(shows, offered) if seen.yesno.yes else ()))), "")
@@ -107,11 +91,9 @@ def wish_in(shows: Mapping[str, Any], seen: Analysis, state: State, acts: Sequen
     if not kind and state.show and _MORE.search(low):
         kind = state.show
     if not kind and lately and short:
-        corrected = _CORRECTS.search(low) and state.said[-1].endswith(state.shown[-1])
+        corrected = shown and _CORRECTS.search(low)
         kind = state.show if _ANOTHER.search(low) or corrected else ""
         kind = (kinds_in(shows, low) or [kind])[-1] if corrected else kind  # "not a song, I wanted a joke"
-    if not kind and acts and not _OFFERS.search(low):
-        kind = acts[0]
     if not kind:
         return None
     if kind == "play":
@@ -150,12 +132,17 @@ def _has(text: str, word: str) -> bool:
     return re.search(rf"\b{re.escape(word)}(?:s|es)?\b", text, re.IGNORECASE) is not None
 
 
-def _named(shows: Mapping[str, Any], sentence: str) -> str:
-    """Return the performance that a sentence asks for by its name: *a riddle please*."""
-    low, size = sentence.lower(), len(sentence.split())
-    kind = next(iter(kinds_in(shows, low)), "")
-    asks = size <= BARE or (size <= LONGEST and _WANTS.search(low))
-    return kind if kind and asks and not _OFFERS.search(low) else ""
+def _asked(shows: Mapping[str, Any], act: Match) -> str:
+    """Return the performance that an act asks for; empty if the act is too doubtful."""
+    named = kinds_in(shows, act.text)
+    if act.score < UNNAMED and not named:
+        return ""
+    if act.name in named:  # "a joke, but no knock knock joke"
+        return act.name
+    low = act.text.lower()
+    if act.name == "play" and (_GUESSER.search(low) or _HOLDER.search(low)):
+        return "animal" if _GUESSER.search(low) else "holder"
+    return next((kind for kind in named if kind in _SHARES.get(act.name, ())), act.name)
 
 
 def _subject(shows: Mapping[str, Any], tree: Tree, low: str) -> Word | None:
