@@ -371,7 +371,7 @@ def parse(text: str | bytes) -> ClientFrame:
 
 
 def serialise(frame: ServerFrame) -> str:
-    """Return a frame as JSON text, without the fields that have their default values.
+    """Return a frame as JSON text. Leave out fields that have their default values, except ``type``.
 
     The text is ASCII, because values may hold lone surrogates, which UTF-8 cannot encode.
     """

@@ -1,7 +1,7 @@
 """Benches: spikes that wait together for a second spike, their *counterpart*.
 
 A clause with two constraints, its *needs*, takes a pair of spikes. The spike that arrives first is the *first spike*.
-It waits in a *half* (``halves.py``). Suppose that a hundred first spikes wait when a counterpart arrives. The
+It waits in a *half*: a table of such first spikes, without activations (``halves.py``). Suppose that a hundred first spikes wait when a counterpart arrives. The
 counterpart completes a hundred pairs. Only one pair runs, and the first spikes of the other pairs take the next
 counterpart (L12). So only the oldest pair gets an activation, the *head* of the bench. The other first spikes stay on
 the bench, and the whole bench takes the next counterpart.

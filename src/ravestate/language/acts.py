@@ -11,6 +11,7 @@ from .lexicon import loaded_lexicon
 from .matcher import Match, Matcher, bundled_matcher
 from .nonsense import is_nonsense
 from .normal import normalise, plain
+from .replies import replies
 from .sentences import sentences as sentences_of
 from .shape import shape
 
@@ -38,6 +39,8 @@ _PLAYFUL = re.compile(
     r"|like you|lovable|charming))\b|[:;]-?[)DPp](?!\w)|[😂🤣😄😜😉😅😆😁]",
     re.IGNORECASE,
 )
+LEAVING = 0.07
+"""If a farewell suits as a reply with a smaller probability, the text is no farewell."""
 _SUBJECTS = word_set("i you he she it we they")
 _LINKS = word_set("and then now so but")
 _GOES_ON = word_set("is was are were be means of for to that which by in on at s")
@@ -105,18 +108,23 @@ def _read(sentences: Sequence[str]) -> list[_Sentence]:
 
 
 def _taken_back(matcher: Matcher, found: Match | None) -> bool:
-    """Return whether a text is no wish: it is a mere name ("Bonn"), or a negation cancels the wish.
+    """Return whether a text is no wish: it is a mere name ("Bonn"), no farewell suits as a reply, or a negation cancels it.
 
     "Don't talk" stays a wish, because its example is also negative.
     """
     if found is None or found.name not in WISHES or (said := plain(found.text)) in matcher.exact:
         return False
     lexicon = loaded_lexicon()
-    if lexicon is not None and lexicon.name(said) != said:
+    if (lexicon is not None and lexicon.name(said) != said) or (found.name == "farewell" and not _parts(found.text)):
         return True
     asserted = _NEGATION.sub("", found.text, count=1)
     wish = matcher.match(asserted) if asserted != found.text else None
     return wish is not None and wish.name == found.name and not _NEGATION.search(wish.example)
+
+
+def _parts(text: str) -> bool:
+    """Return whether a farewell may suit as a reply to a text. It does not suit *so that's gone now*."""
+    return replies().kinds(text).get("leaves", 1.0) >= LEAVING
 
 
 class _Sentence:
@@ -127,6 +135,8 @@ class _Sentence:
         self.others: list[str] = []
         for part in _PAUSE.split(sentence):
             self.others += _after_formulas(matcher, plain(part).split(), formulas)
+        if "farewell" in formulas and self.others and not _parts(sentence):  # "see you get it"
+            del formulas["farewell"]
         if whole is not None and not formulas:
             self.others = []
         self.differs = matcher.loaded and whole is None and bool(self.others)

@@ -38,8 +38,6 @@ _SECOND_PERSON = word_set("you your yours yourself u ur")
 INTENTS = {"play": "intent_play", "greeting": "intent_hi", "farewell": "intent_bye"}
 """Act of the user → the name of nlp's signal for this act. Other acts have no signal."""
 
-LEAVING = 0.07
-"""The minimum probability that a farewell suits as a reply. Below, the utterance is no farewell."""
 MATCHERS = ("acts", "feelings", "asks")
 """The names of the files of examples with which an analysis compares the user's sentences."""
 
@@ -163,7 +161,7 @@ def analyse(
         users: The names of the users present. In the normal form, these names and the agent's names have capitals.
         designed: The matcher of the designer's intents. The first call waits until the matcher has learnt its examples.
         reading: A language model's reading of the text. If it keeps to the user's words, it gives the normal form, the
-            kind of question, and the meaning as an answer.
+            kind of question, and the text's meaning as a yes or no.
 
     Raises:
         PlatformError: spaCy or the pipeline is missing, or the pipeline cannot be loaded.
@@ -201,20 +199,13 @@ def analyse(
         statements=statements,
         contrasts=contrasts_of(repaired(tree)),
         closing=closing,
-        acts=_meant(acts(sentences), normal.unguessed),
+        acts=acts(sentences),
         feelings=feelings(sentences, names),
         asks=_by_name(bundled_matcher("asks").match_all(sentences)),
         move=bundled_moves().move(meant, asks=question is not None or "?" in text),
         questions=tuple(analyse(one, pipeline, names, users) for one in questions_in(tree)),
         intents=_by_name(designed.match_all(sentences or (text,)), ":") if designed else {},
     )
-
-
-def _meant(found: dict[str, Match], text: str) -> dict[str, Match]:
-    """Return the acts without a farewell that calls for no farewell: *so that's gone now*."""
-    if "farewell" in found and replies().loaded and replies().kinds(text).get("leaves", 0.0) < LEAVING:
-        return {name: act for name, act in found.items() if name != "farewell"}
-    return found
 
 
 def _by_name(matches: Iterable[Match | None], part: str = "") -> dict[str, Match]:

@@ -10,7 +10,7 @@ from .tree import Tree
 from .verbs import VERBAL
 
 SHORTEST = 3
-"""The minimum number of other words in an utterance that says more than the user's name."""
+"""An utterance says more than the user's name if it has at least this many words besides the introduction."""
 
 _CLAUSE = re.compile(
     r"[.!?;:,…–—()\n]+\s*|\s(?:and|but|so|by the way|btw)\s(?=(?:i|my|we|our|it|this|that|the|he|she|they|there)\b)",

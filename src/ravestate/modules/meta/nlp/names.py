@@ -80,7 +80,8 @@ entities: rs.Slot[tuple[Entity, ...]] = module.slot("entities", (), always=True)
 """The named entities: persons, places, dates, numbers."""
 
 triples: rs.Slot[tuple[Triple, ...]] = module.slot("triples", (), always=True)
-"""The statements as subject, predicate and object. The unknown of a question is a `QuestionWord`."""
+"""The statements and questions as subject, predicate and object. In a question, a `QuestionWord` stands for the part
+that it asks for."""
 
 question: rs.Slot[QuestionWord | None] = module.slot("question", None, always=True)
 """The kind of the first question; None if nothing is asked."""

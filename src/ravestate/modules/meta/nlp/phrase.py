@@ -26,7 +26,7 @@ class Phrase:
     text: str
     """The phrase as the triple has it, for example ``my sister Rosa``."""
     head: str = ""
-    """The lemma of the common noun or adjective, for example ``sister``, in lower case. Empty for names and pronouns."""
+    """The lemma of the common noun, for example ``sister``, or the adjective or gerund itself, in lower case. Empty for names and pronouns."""
     names: tuple[str, ...] = ()
     """The names in the phrase, as written. For example, *two brothers, Max and Tim* has ``("Max", "Tim")``."""
     owner: Phrase | None = None

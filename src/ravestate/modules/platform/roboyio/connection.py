@@ -16,7 +16,8 @@ from .robot import Axis, Port, Robot
 QUALITY = quality(None, depth=10, latch=False)
 LATCHED = quality("latched", depth=1, latch=True)
 STEP = 0.1
-"""The seconds between two commands to an axis with speed commands (see `Axis.speed`): a base stops without commands."""
+"""The seconds between two commands to an axis with speed commands (see `Axis.speed`). Such an axis, for example a wheeled
+base, stops if it gets no commands."""
 NEAR = 0.03
 """An axis with speed commands has arrived if it is at most this far from its target (radians)."""
 NOD = ((0.0, -0.18), (0.25, 0.1), (0.25, -0.12), (0.25, 0.0))

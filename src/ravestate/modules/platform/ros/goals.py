@@ -17,10 +17,10 @@ if TYPE_CHECKING:
     from .node import Node
 
 AGAIN = 0.2
-"""If the server has not listed a goal after this many seconds, send the goal again. Servers ignore repeated goals."""
+"""If the server has shown no sign of a goal after this many seconds, send the goal again. Servers ignore repeated goals."""
 SUCCEEDED = 3
 ENDS = {2: "cancelled", 8: "cancelled", 4: "aborted", 5: "refused", 9: "lost"}
-"""The final states of a goal that has no result, as in actionlib_msgs/GoalStatus."""
+"""The final states of a goal that did not succeed, as in actionlib_msgs/GoalStatus."""
 
 
 @dataclass(eq=False, slots=True)
@@ -29,8 +29,8 @@ class _Goal:
     feedback: Callable[[Any], None] | None
     listed: asyncio.Event = field(default_factory=asyncio.Event)
     tracked: bool = False
-    """Whether a status of the server has listed the goal. Feedback alone does not count, because a
-    status from before the goal may come after the feedback."""
+    """Whether a status of the server has listed the goal. Feedback alone does not count: a status that
+    the server sent before it got the goal may come after the feedback. The goal would then seem lost."""
 
 
 class GoalTopics:

@@ -24,8 +24,9 @@ HEARD = 0.5
 FAINT = 0.1
 """Sound at the end of a word counts as a pause if its level is below this share of the word's greatest level."""
 DRIFT = 0.06
-"""The echo's reference is the loudspeaker's sound for the echo canceller. The reference advances with the microphone's
-sound. If it is more than this many seconds away from the loudspeaker's position, it jumps there."""
+"""The echo's reference is the loudspeaker's sound for the echo canceller. The position in the reference advances by
+the length of the microphone's sound. If it differs by more than this many seconds from the seconds that the loudspeaker
+has played, it jumps to those."""
 LEAD = 4.0
 """If the loudspeaker's queue has more than this many seconds of sound, the mouth waits before it synthesises more."""
 KEPT = 30.0
@@ -94,7 +95,7 @@ class _Queued:
 
 
 class Mouth:
-    """The mouth of one line. It speaks one utterance after another."""
+    """The mouth of one line (a microphone and a loudspeaker). It speaks one utterance after another."""
 
     def __init__(self, line: Line, voice: Synthesiser) -> None:
         self.line = line
@@ -110,7 +111,7 @@ class Mouth:
         self.silent_since: float | None = None
         """The time at which `hold` stopped the speech; None if the speech is not held."""
         self._queue: list[_Queued] = []
-        self._heard = 0  # how many characters the user had heard before the last `release` repeated the cut word
+        self._heard = 0  # characters that the user had heard at the last `release`, which repeats the interrupted word
         self._end = 0.0
         self._held_at: float | None = None
         self._released = asyncio.Event()
@@ -200,7 +201,7 @@ class Mouth:
             await self._released.wait()
 
     async def room(self) -> None:
-        """Wait until little sound is left in the queue, even if the line drops sound without playing it."""
+        """Wait until little sound is left in the queue. Do not wait for sound that the line dropped without playing it."""
         while (left := self.lead - LEAD) > 0.0:
             with contextlib.suppress(TimeoutError):
                 async with asyncio.timeout(max(0.05, left)):

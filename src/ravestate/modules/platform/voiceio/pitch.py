@@ -25,8 +25,8 @@ LASTING = 15
 """A change of voice within speech needs this many voiced frames on each side. One person's pitch jumps for a shorter
 time."""
 AGREE = 0.9
-"""At a change of voice, a threshold separates two groups of pitches: the earlier and the later ones. At least this share
-of each group must be on its side. The threshold is halfway between the two medians (in logarithms)."""
+"""At a change of voice, a threshold separates the earlier pitches from the later ones. It is halfway between the medians
+of the two groups (in logarithms). At least this share of each group must be on the same side as the group's median."""
 SOFT = 500
 """A frame below this level counts as silence."""
 _SHORTEST, _LONGEST = int(IN_RATE / HIGHEST), int(IN_RATE / LOWEST)
