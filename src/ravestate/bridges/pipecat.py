@@ -96,7 +96,7 @@ class RavestateProcessor(FrameProcessor):
                 while not self._utterances.empty():
                     self._utterances.get_nowait()
                     self._utterances.task_done()
-                await self._utterances.join()  # so that the interrupted response ends before the interruption passes
+                await self._utterances.join()  # so that the interrupted response ends before this frame is passed on
             case EndFrame():
                 await conversation.end()
                 await self._utterances.join()
@@ -137,7 +137,7 @@ class RavestateProcessor(FrameProcessor):
             role = message["role"]
             if message is self._taken or (role != "user" and (words or role != "assistant")):
                 break
-            if role == "user":  # the agent's earlier message may come after the user's message
+            if role == "user":  # in the list, an earlier message of the agent may follow the user's
                 content = message["content"]
                 newest = newest if words else message
                 words.insert(0, content if isinstance(content, str) else _text_in(content))

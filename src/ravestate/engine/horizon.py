@@ -55,8 +55,8 @@ Place = tuple[int, Group, SlotNumbers]
 
 FINAL: Final = 1 << 60
 STALE: Final = -1
-"""Special values in place of the depth in `Horizon._known`. `FINAL` marks a final strength. `STALE` marks a
-strength that the engine must derive again."""
+"""Special values for the last item of an entry of `Horizon._known`, which is otherwise a depth. `FINAL` marks a final
+strength. `STALE` marks a strength that the engine must derive again."""
 
 Step = Generator[Any, int, int]
 """A step of a derivation: it yields further steps, receives the strength of each, and returns its own strength."""
@@ -77,8 +77,8 @@ class Horizon:
         visited: The groups on whose state the results depend.
         hopes: The changes after which the results may differ. A key is a kind of change (`RULE`, `OUTSIDE` or `SEEN`,
             see ``activation.py``) and the number of a rule or signal. The value is a count. For `OUTSIDE`, the count is
-            a limit: if a rule has more than this many other activations, a change of one activation does not change the
-            results. For other kinds, the count is 0.
+            a limit. If one activation of a rule changes, and the rule has more than this many others, the results stay
+            the same. For other kinds, the count is 0.
         recheck: The time (seconds) at which the first of the spikes on which the results rest becomes too old.
     """
 
@@ -383,7 +383,7 @@ class Horizon:
         """Count the activations of a rule that cannot help `group` from outside.
 
         These are the inert activations and, if `near`, the members of `group`. `near` says that no detached effect lies
-        between the rule and the signal, so that members help from inside.
+        between the rule and the signal. Then members help from inside the group, not from outside.
         """
         if self._inert is None:
             self._inert = {}
@@ -403,7 +403,7 @@ class Horizon:
 def _solve(step: Step) -> int:
     """Run a derivation with all its steps, and return its strength.
 
-    A step that needs the strength of another step yields that step to this loop (`_comes`, `_caused`). A ``yield from``
+    If a step needs the strength of another step, it yields that step to this loop, as `_comes` and `_caused` do. A ``yield from``
     only divides one step into several functions.
     """
     waiting: list[Step] = []

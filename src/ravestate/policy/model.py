@@ -50,7 +50,7 @@ class SignalPlan:
     listeners: tuple[Need, ...] = ()
     """The needs for this signal in conditions of rules, in declaration order."""
     others: tuple[Need, ...] = ()
-    """The listeners in no conflict set and in no half."""
+    """The other listeners: those in none of `conflict_sets` and `halves`."""
     conflict_sets: tuple[tuple[Clause, ...], ...] = ()
     """Sets of clauses that compete for each spike of the signal; the best clause of a set comes first."""
     halves: tuple[Half, ...] = ()
@@ -167,7 +167,7 @@ class Clause:
 
 @dataclass(slots=True, eq=False, repr=False)
 class RulePlan:
-    """A rule, its numbers, and the numbers of the slots and signals that it names. Times are in seconds."""
+    """A rule with its index and settings, and the indices of the slots and signals that it names. Times are in seconds."""
 
     index: int
     rule: Rule[Any, Any]
@@ -213,15 +213,16 @@ class Half:
     Attributes:
         needs: The needs, in declaration order.
         best: The same needs; the need of the best clause comes first.
-        ranks: For each clause in `best`: its negated base utility, and its number.
-        rank: Number of a clause → its place in `best`.
+        ranks: For the clause of each need in `best`: its negated base utility, and its index.
+        rank: Index of a clause → the place of its need in `best`.
         patience: The patience of the rules in seconds; None if they have the context's patience (L16).
         kin: Whether both spikes of a clause must belong to one causal group (L12).
         max_age: The age (seconds) at which the needs give a spike up.
         slotset: The numbers of the slots that each of the rules writes.
         busy: Whether a held spike counts for ``core:activity``.
         places: Number of a rule → the place of its need in `needs`.
-        sole: Whether the half has benches (``engine/benches.py``). Such a half has a single need. The signals of its
+        sole: Whether first spikes wait in *benches* (``engine/benches.py``), whose oldest pair alone gets an
+            activation. Such a half has a single need. The signals of its
             clause come only from outside or from detached rules, and no better clause writes its slots for the same
             cause.
     """

@@ -33,7 +33,7 @@ def path_of(settings: Settings) -> Path | None:
 
 
 def open_memory(settings: Settings) -> Memory:
-    """Start to open memory at the place that the settings name, in a thread of its own. Return the memory immediately.
+    """Start to open memory at the place that the settings name, in another thread. Return the memory immediately.
 
     ``memory.opened()`` raises the errors of the opening.
     """

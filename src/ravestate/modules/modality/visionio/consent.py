@@ -142,7 +142,8 @@ async def respect(ctx: rs.RuleContext) -> None:
     weight=PRIORITY + 2,
 )
 async def forget(ctx: rs.RuleContext) -> None:
-    """Remove a person's faces from memory. If the only user is a person in memory, this works without a camera."""
+    """Remove a person's faces from memory. Without a camera, this works if there is a single user, and the
+    agent knows which person in memory they are."""
     visitor, memory = ctx[visitors].get(ctx.payload(withdrawn)), ctx[ontology.memory]
     person, users = visitor.node if visitor is not None else None, list(ctx[interloc.users].values())
     if person is None and len(users) == 1 and isinstance(users[0], interloc.Recognised):

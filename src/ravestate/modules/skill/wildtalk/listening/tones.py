@@ -26,9 +26,9 @@ FELT: Mapping[str, str] = {
 SURE, GLAD = 0.65, 0.8
 """The minimum confidence in a sad feeling, and in any other feeling."""
 LASTS, GRIEF = 5, 12
-"""The number of turns for which the tone of a feeling lasts, and the tone of a loss."""
+"""The number of turns for which the tone of a feeling lasts; the same for grief in grave words."""
 DOUBT = 0.4
-"""The minimum confidence in a dark tone at which an utterance does not count as good news."""
+"""From this confidence in a dark tone on, a glad feeling does not count."""
 
 
 def tone_of(text: str) -> str:
@@ -38,7 +38,9 @@ def tone_of(text: str) -> str:
 
 
 def heard_tone(seen: Analysis) -> tuple[str, int]:
-    """Return the tone of an utterance, and the number of turns for which it lasts. Empty if no tone is sure.
+    """Return the tone of an utterance, and the number of turns for which it lasts.
+
+    The tone is empty if none is sure.
 
     Sorrow precedes the other feelings. A feeling says more than the classifier of tones.
     """
