@@ -137,7 +137,7 @@ class RavestateProcessor(FrameProcessor):
             role = message["role"]
             if message is self._taken or (role != "user" and (words or role != "assistant")):
                 break
-            if role == "user":  # in the list, an earlier message of the agent may follow the user's
+            if role == "user":  # in the list, an earlier message of the agent may follow the user's message
                 content = message["content"]
                 newest = newest if words else message
                 words.insert(0, content if isinstance(content, str) else _text_in(content))

@@ -102,7 +102,8 @@ class Conversation:
 
     Args:
         context: The agent's context for this conversation.
-        speak: A function that receives each utterance as it begins. While `answer` runs, it yields them instead.
+        speak: A function that receives each utterance as it begins. While `answer` runs, `answer` yields
+            the utterances instead.
         platform: The platform's name, for the user's key in ``interloc.users``.
     """
 
@@ -184,7 +185,8 @@ class Conversation:
     async def answer(self, text: str) -> AsyncGenerator[Utterance, None]:
         """Tell the agent what the user has said, and yield all utterances until the answer is complete.
 
-        Closing the generator earlier is an interruption. An answer begins only after the previous answer has ended.
+        Closing the generator before its end interrupts the answer. An answer begins only after the previous answer has
+        ended.
         """
         async with self._turn:
             utterances: asyncio.Queue[Utterance | None] = asyncio.Queue()

@@ -243,7 +243,7 @@ class Module:
 
 
 def as_module(value: object) -> Module:
-    """Return the value itself if it is a `Module`; or a Python module's attribute ``module``, or its only `Module`.
+    """Return a `Module` itself; for a Python module, return its attribute ``module``, or else its only `Module`.
 
     Raises:
         DeclarationError: The value is of another type, or the Python module holds no `Module` or more than one.

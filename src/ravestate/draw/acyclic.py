@@ -84,8 +84,8 @@ _LAST = (0, 2)  # vertices of these ranks (see `_urgency`) get the last free num
 def _urgency(out: int, into: int) -> tuple[int, int]:
     """Return a vertex's sort key (rank, gain).
 
-    The ranks are: 0 for a sink; 1 for a source; 2 for a sink if weak edges are ignored; 3 for a source if weak edges
-    are ignored; 4 for any other vertex.
+    The ranks are: 0 for a sink (no outgoing edges); 1 for a source (no incoming edges); 2 for a sink if
+    weak edges are ignored; 3 for a source if weak edges are ignored; 4 for any other vertex.
     """
     if out == 0:
         return (0, 0)

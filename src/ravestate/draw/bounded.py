@@ -1,9 +1,9 @@
 """Layers of bounded size, for pictures that would be too tall for a screen.
 
-If edges are as short as possible, layers may be few and crowded, e.g. if a vertex has many neighbours, and all share
-one layer. If the picture is then tall and narrow, the number of vertices in a layer gets a bound. Further vertices move
-to a later layer, as in the scheduling of Coffman and Graham (1972). A vertex is ready when all its predecessors have a
-layer. Among the ready vertices, those of the latest original layer come first, so that chains continue.
+If edges are as short as possible, layers may be few and crowded, e.g. if all the neighbours of a vertex share one layer.
+If the picture is then tall and narrow, the number of vertices in a layer gets a bound. Further vertices move to a later
+layer, as in the scheduling of Coffman and Graham (1972). A vertex is ready when all its predecessors have a layer. Among
+the ready vertices, those of the latest original layer come first, so that chains continue.
 """
 
 from __future__ import annotations

@@ -1,8 +1,8 @@
 """Coordinate assignment: it first makes lines short, and then makes them straight.
 
-Each layer in turn moves as near as possible to its neighbours. Within one layer, a weighted isotonic regression (pool
-adjacent violators) finds the best coordinates that keep the minimum gaps. Forward and backward sweeps repeat this for
-all layers. In the end, `Straightener` removes small steps.
+In one layer after the other, the vertices move as near as possible to their neighbours. Within one layer, a weighted
+isotonic regression (pool adjacent violators) finds the best coordinates that keep the minimum gaps. Forward and backward
+sweeps repeat this for all layers. In the end, `Straightener` removes small steps.
 """
 
 from __future__ import annotations
@@ -62,7 +62,10 @@ def assign_coordinates(graph: LayeredGraph, room: float | None = None) -> list[f
 
 
 def _isotonic(wishes: Sequence[float], weights: Sequence[float], gaps: Sequence[float], half: float) -> list[float]:
-    """Return places from -half to half that keep the gaps and are nearest to `wishes` (weighted least squares)."""
+    """Return places that keep the gaps and are nearest to `wishes` (weighted least squares).
+
+    The places are between -`half` and `half` (pixels). `half` is half of the height that the picture may have.
+    """
     pools: list[tuple[float, float, int]] = []  # (mean, weight, number of members)
     offsets: list[float] = []
     offset = 0.0

@@ -13,7 +13,7 @@ from itertools import pairwise
 
 from ravestate.draw.layered import LayeredGraph, places
 
-_WORK = 400_000  # the maximum number of segments times sweeps
+_WORK = 400_000  # the maximum number of segments (lines between two neighbouring layers) times sweeps
 _PATIENCE = 4  # the search ends after this many sweeps without improvement
 
 

@@ -54,7 +54,7 @@ class Port:
 
 
 Chain = list[int]
-"""The segments of a link, from its lower to its higher end."""
+"""The indices of the segments of a link, from its lower to its higher end."""
 
 
 @dataclass(slots=True)
@@ -145,7 +145,7 @@ class _Builder:
         self.graph = graph
         self.ports: dict[tuple[object, ...], int] = {}
         self.dummies: dict[tuple[object, ...], int] = {}
-        self.known: dict[tuple[int, int], int] = {}  # pair of ports → the number of its segment
+        self.known: dict[tuple[int, int], int] = {}  # pair of ports → the index of its segment
 
     def vertex(self, layer: int, kind: VertexKind, width: float, height: float) -> int:
         graph = self.graph

@@ -1,7 +1,7 @@
 """Layered layout after Sugiyama, Tagawa and Toda (1981), from left to right.
 
 1. Cycle removal reverses some edges (`acyclic`): preferably detached edges and reads.
-2. Layer assignment keeps edges short (`simplex`). Layers are bounded if the picture would be too tall (`bounded`).
+2. Layer assignment keeps edges short (`simplex`). Layers get a maximum size if the picture would be too tall (`bounded`).
 3. Dummy vertices split long edges into short segments (`layered`). Crossing minimisation orders the layers (`crossings`).
 4. Coordinate assignment places ports (`layered`) and vertices (`coordinates`).
 5. Edge routing sets the distances between the layers and the turns of the lines (`tracks`, `routing`).

@@ -21,7 +21,7 @@ _LEVEL = 0.01  # pixels: two coordinates that differ by less are equal
 
 @dataclass(frozen=True, slots=True)
 class Routed:
-    """The middle of each vertex, the line of each link from its lower to its higher layer, and the picture's width."""
+    """The middle of each vertex, the line of each link (edge) from its left to its right end, and the picture's width."""
 
     middles: list[Point]
     lines: list[list[Point]]

@@ -21,8 +21,8 @@ _WORK = 2_000_000  # the maximum number of exchanges times vertices
 def network_simplex(count: int, arcs: Sequence[Arc]) -> list[int]:
     """Return the layer, from 0, of each vertex of an acyclic, connected graph with `count` vertices.
 
-    Each arc spans at least its length, and the sum of weight x span is minimal. The number of exchanges is bounded, so
-    in large graphs the sum may be slightly above the minimum.
+    Each arc spans at least its minimum length, and the sum of weight x span is minimal. The number of exchanges is
+    bounded, so in large graphs the sum may be slightly above the minimum.
 
     Raises:
         ValueError: The graph has a cycle, or is not connected.

@@ -21,7 +21,7 @@ _CLASSES: tuple[tuple[float, str], ...] = (
     (1.00, "%Wm"),
     (1.10, "@"),
 )
-"""Widths in ems, each with the characters of this width."""
+"""Widths in ems (multiples of the font size), each with the characters of this width."""
 _EMS: dict[str, float] = {character: ems for ems, characters in _CLASSES for character in characters}
 _OTHER = 0.85  # the width of any other character, in ems
 _WIDE = 1.05  # the width of an East Asian wide character, in ems

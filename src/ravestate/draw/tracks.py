@@ -1,8 +1,8 @@
 """Orthogonal routing between two layers: the track on which each line turns.
 
-Segments that leave or enter one port form a net: one vertical line with horizontal stubs to both sides. Nets get tracks
-from left to right. Two constraints order the nets: stubs of different nets must not overlap (strong), and few stubs should
-cross the vertical lines of other nets (weak).
+Segments that leave or enter one port (a point on the side of a vertex) form a net: one vertical line with horizontal
+stubs to both sides. Nets get tracks from left to right. Two constraints order the nets: stubs of different nets must not
+overlap (strong), and few stubs should cross the vertical lines of other nets (weak).
 """
 
 from __future__ import annotations

@@ -1,6 +1,6 @@
 """Tools that understand text, for `nlp` and every skill. They declare no signals and no slots.
 
-An utterance passes these steps once, and all modules share the result:
+Each utterance goes through these steps once, and all modules share the result:
 
 1. `normalise` turns typed English into its normal form, which is correct written English.
 2. `sentences` splits the normal form into sentences.

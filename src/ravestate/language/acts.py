@@ -25,7 +25,7 @@ FORMULAS = frozenset({"greeting", "farewell", *COURTESY})
 FORMULA_WORDS = 4
 """The maximum number of words of a formula."""
 ADDRESS_WORDS = 3
-"""The maximum number of further words in an utterance that only greets: "hello my dear robot"."""
+"""The maximum number of words besides the act for which `only` is true: "hello" with "my dear robot"."""
 
 WISHES = frozenset({"quiet", "stop", "forget_me", "farewell", "play"})
 """Acts that a negation cancels: "don't be quiet"."""
@@ -40,7 +40,7 @@ _PLAYFUL = re.compile(
     re.IGNORECASE,
 )
 LEAVING = 0.07
-"""If a farewell suits as a reply with a smaller probability, the text is no farewell."""
+"""If the probability that a farewell suits as a reply is smaller than this, the text is no farewell."""
 _SUBJECTS = word_set("i you he she it we they")
 _LINKS = word_set("and then now so but")
 _GOES_ON = word_set("is was are were be means of for to that which by in on at s")
@@ -52,7 +52,8 @@ def heard(text: str, names: Collection[str] = ()) -> tuple[str, ...]:
 
     Args:
         text: The user's words.
-        names: The agent's names, which get capitals. In a feeling, they stand for *you*.
+        names: The agent's names, which get capitals. The clauses that may show a feeling are encoded with *you* in
+            place of these names.
     """
     said = sentences_of(normalise(text[:LONGEST], names).text)
     bundled_matcher("acts").prepare([*said, *clauses(said, names)])
@@ -108,9 +109,10 @@ def _read(sentences: Sequence[str]) -> list[_Sentence]:
 
 
 def _taken_back(matcher: Matcher, found: Match | None) -> bool:
-    """Return whether a text is no wish: it is a mere name ("Bonn"), no farewell suits as a reply, or a negation cancels it.
+    """Return whether a text that matches one of `WISHES` is no wish after all.
 
-    "Don't talk" stays a wish, because its example is also negative.
+    It is none if it is a mere name ("Bonn"), or if a negation cancels the wish. It is no farewell if a farewell does not
+    suit as a reply. "Don't talk" stays a wish, because its example is also negative.
     """
     if found is None or found.name not in WISHES or (said := plain(found.text)) in matcher.exact:
         return False

@@ -18,7 +18,7 @@ if TYPE_CHECKING:
     from numpy.typing import NDArray
 
 BYTES = 80_000_000
-"""The maximum size of the cache in bytes. Above it, the least recently used files are removed."""
+"""The maximum size of the cache in bytes. If the cache is larger, the least recently used files are removed."""
 
 
 def cached(key: object, compute: Callable[[], Mapping[str, NDArray[Any]]]) -> Mapping[str, NDArray[Any]]:

@@ -19,7 +19,7 @@ class Classifier(Network):
     """A small recurrent network that reads the first `LONGEST` characters of a text. Thread-safe.
 
     `Matcher` learns from a few examples when the program starts. A classifier needs thousands of examples and a
-    training beforehand, and is more often right.
+    training beforehand, and is more often right than a matcher.
 
     Example:
         ::
@@ -46,7 +46,7 @@ class Classifier(Network):
 
         Args:
             text: A text in normal form.
-            before: The utterance before, if the network reads it.
+            before: The user's previous utterance, if the network reads it.
         """
         text, before = text[:LONGEST], before[:LONGEST]  # long texts would fill the cache
         return self._latest(text, before) if self.loaded and text.strip() else ()

@@ -8,7 +8,7 @@ if TYPE_CHECKING:
     from numpy.typing import NDArray
 
 BLOCK = 256
-"""The size of a matrix that is factored as a whole; larger ones are halved."""
+"""The maximum size of a matrix that is factored as a whole; larger matrices are halved."""
 
 
 def factor(matrix: NDArray[Any]) -> NDArray[Any]:

@@ -61,7 +61,10 @@ def clauses(sentences: Sequence[str], names: Collection[str] = ()) -> list[str]:
 
 
 def _clauses(sentence: str, alone: bool) -> list[str]:
-    """Return the clauses of a compound sentence; if `alone`, only those of at least `SHORTEST` words."""
+    """Return the clauses of a compound sentence; if `alone`, only those of at least `SHORTEST` words.
+
+    `alone` says that the sentence as a whole shows no feeling.
+    """
     parts = [part for part in _CLAUSE_END.split(sentence) if plain(part)]
     least = SHORTEST if alone else 1
     return [part for part in parts if len(part.split()) >= least] if len(parts) > 1 else []

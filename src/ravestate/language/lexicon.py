@@ -21,9 +21,9 @@ from .contractions import word_set
 FREQUENT = 5000
 """The minimum count, in subtitles of 1.6 billion words, of a word that replaces an unknown word."""
 COMMON = 15_000
-"""A word that may be a name counts as an ordinary word if its count in lower case is at least this."""
+"""A word that may be a name is taken for an ordinary word if its count in lower case is at least this."""
 RARE = 50
-"""A word counts as rare if its count is at most this, and it is not an ordinary word of the dictionary."""
+"""A word is rare if its count is at most this, and it is not an ordinary word of the dictionary."""
 DOUBLED = 20
 """The factor by which swapped and doubled letters are more frequent than other typing errors."""
 SHORTEST = 4

@@ -1,8 +1,9 @@
 """A small classifier of sentences by meaning and spelling, with a class *none of these*.
 
 It is a kernel ridge regression over example sentences. The kernel is a sum of two similarities: a Gaussian of the
-distance in meaning (from an `Encoder`), and the cosine of the spelling (groups of three and four letters). If the
-shapes of two sentences differ, for example *my* and *your*, both similarities are lower.
+distance in meaning (from an `Encoder`), and the cosine of the spelling (groups of three and four letters). The
+shape of a sentence is the persons that it mentions, and whether it asks. If the shapes of two sentences differ, for
+example *my* and *your*, both similarities are lower.
 """
 
 from __future__ import annotations
@@ -254,7 +255,7 @@ class _Learnt:
         targets = np.eye(len(self._classes), dtype=np.float32)[self._of]
         factored = factor(kernel)
         weights = factored.T @ (factored @ targets)
-        # The scores of each example by a classifier that has learnt all the others, from the diagonal of the inverse.
+        # The scores of each example by a classifier that has learnt all other examples, from the diagonal of the inverse.
         left_out = targets - weights / np.square(factored).sum(axis=0)[:, None]
         margins, others = margins_of(left_out), left_out.argmax(axis=1)
         wrong = np.flatnonzero((others != self._of) & (margins > DOUBT))

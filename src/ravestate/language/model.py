@@ -85,7 +85,7 @@ class SentenceModel:
 
         Args:
             folder: The folder with ``model.onnx`` and ``tokenizer.json``.
-            layers: The names of values in the model's graph that `token_vectors` also returns.
+            layers: The names of the values in the model's graph that `token_vectors` returns.
 
         Raises:
             PlatformError: A package or a file is missing or broken.
@@ -141,7 +141,7 @@ class SentenceModel:
 
     @property
     def width(self) -> int:
-        """The last dimension of the output."""
+        """The size of the last dimension of the output."""
         return int(self._session.get_outputs()[0].shape[-1])
 
     def run(

@@ -31,11 +31,14 @@ if TYPE_CHECKING:
     from numpy.typing import NDArray
 
 SPREAD, FORM = 0.05, 1.0
-"""How fast the similarity of form decays with the distance, and the weight of this similarity in the kernel."""
+"""`SPREAD` says how fast the similarity of form decays with the distance. `FORM` is the weight of this similarity."""
 COMMON = 0.1
 """A constant that the kernel adds for any two utterances."""
 RIDGE, RIDGE_BORROWED = 0.5, 2.0
-"""The ridge penalties of own and borrowed examples. Borrowed examples come from other files, and count less."""
+"""The ridge penalty of own examples, and the ridge penalty of borrowed examples. Each limits the weight of an example.
+
+Borrowed examples come from other files, and get less weight.
+"""
 BORROWED = 25
 """The maximum number of examples that are borrowed from one class of another file."""
 UNLIKELY = 0.15

@@ -22,9 +22,10 @@ if TYPE_CHECKING:
 
 
 BEFORE = 24
-"""The maximum number of tokens of the utterance before, and of the agent's answer to it."""
+"""The maximum number of tokens that a network reads of the user's previous utterance. The same maximum applies to
+the agent's answer to that utterance."""
 EARLIER, SAID = 2, 3
-"""The mark of a token of the utterance before, and of the agent's answer to it."""
+"""`EARLIER` marks the tokens of the user's previous utterance. `SAID` marks the tokens of the agent's answer to it."""
 LATEST = 16
 """The number of texts whose vectors are kept, because several networks read one utterance."""
 
@@ -38,8 +39,8 @@ class Network:
         Args:
             file: An ONNX file. Its inputs are ``vectors`` (1, tokens, layers * 384), ``marks`` (1, tokens: 1 for a capital,
                 `EARLIER` or `SAID` for what came before) and perhaps ``context`` (1,). Its metadata has ``labels`` with
-                semicolons between them. ``before`` is 1 if it reads the utterance before, and ``said`` is 1 if it reads
-                the agent's answer to that.
+                semicolons between them. In the metadata, ``before`` is 1 if the network reads the user's previous
+                utterance. ``said`` is 1 if the network reads the agent's answer to that utterance.
         """
         self._file = file
         self._lock = threading.Lock()
@@ -99,11 +100,11 @@ class Network:
 
         Args:
             text: One or more sentences in normal form.
-            context: The number of the label that the agent has just asked for, from 1 on; 0 for no label. Pass None if the
-                network has no such input.
-            before: The utterance before. If the network reads it, its tokens come first, and the outputs have more tokens
-                than the spans.
-            said: The agent's answer to the utterance before. Its tokens come between the two.
+            context: The index of the label that the agent has just asked for, counted from 1; 0 for no label. Pass None if
+                the network has no such input.
+            before: The user's previous utterance. If the network reads it, its tokens come first, and the outputs have
+                more tokens than the spans.
+            said: The agent's answer to the previous utterance. Its tokens come between those of `before` and `text`.
         """
         import numpy as np
 

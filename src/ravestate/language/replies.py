@@ -1,8 +1,8 @@
 """Grade authored replies to an utterance, and find the kinds of reply that suit it.
 
 A network (``replies.onnx``) has learnt from the grades that readers gave to replies, and from utterances whose authors
-chose the kinds. ``tools/networks`` has both. The listening skill of the module wildtalk says the replies. `nlp` asks for the
-kinds: a farewell calls for a reply of the kind ``leaves``.
+chose the kinds that suit. ``tools/networks`` has both. The listening skill of the module wildtalk says the replies.
+`nlp` asks for the kinds: a farewell calls for a reply of the kind ``leaves``.
 """
 
 from __future__ import annotations
@@ -34,7 +34,7 @@ class Replies(Network):
     def grades(self, text: str, before: str = "", said: str = "") -> Mapping[str, tuple[float, float]]:
         """Return for each reply its expected grade, 0 to 2, and the probability of its kind.
 
-        There are none before `load`, or for a blank text.
+        The result is empty before `load`, or for a blank text.
 
         Args:
             text: The utterance in normal form.
@@ -45,7 +45,7 @@ class Replies(Network):
         return self._latest(text, before, said) if self.loaded and text.strip() else {}
 
     def kinds(self, text: str, before: str = "", said: str = "") -> Mapping[str, float]:
-        """Return the probability of each kind of reply, as `grades` does."""
+        """Return the probability of each kind of reply. For the arguments, see `grades`."""
         grades = self.grades(text, before, said)
         likely = (chance for _, chance in grades.values())
         return dict(zip(self.about["kinds"].split(";"), likely, strict=True)) if grades else {}

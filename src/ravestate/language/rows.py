@@ -25,7 +25,7 @@ class Rows:
     """
 
     def __init__(self, packed: NDArray[Any]) -> None:
-        """Take vectors as integers or floats of shape (n, d). They may have any length; later, they are scaled to 1."""
+        """Take vectors as integers or floats of shape (n, d). They may have any length; they are scaled later."""
         import numpy as np
 
         self._packed = packed

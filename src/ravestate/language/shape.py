@@ -16,7 +16,7 @@ if TYPE_CHECKING:
     from numpy.typing import NDArray
 
 WEIGHTS = (0.4, 0.4, 0.1, 0.1)
-"""The weights of the features, which add up to 1: the agent, the user, others, the order of the words."""
+"""The weights of the features, which add up to 1: the agent, the user, other persons, the order of the words."""
 
 _AGENT = word_set("you your yours yourself")
 _USER = word_set("i me my mine myself we us our ours")
@@ -48,7 +48,7 @@ def shape(text: str) -> tuple[bool, bool, bool, int]:
 
 
 def likeness(texts: NDArray[np.int8], others: NDArray[np.int8]) -> NDArray[np.float32]:
-    """Compare the shapes of n texts, (n, 4), with the shapes of m others, (m, 4).
+    """Compare the shapes of n texts, (n, 4), with the shapes of m other texts, (m, 4).
 
     Return an array (n, m): for each pair, the sum of the weights of the features that are equal.
     """

@@ -15,7 +15,7 @@ BUCKETS = 2048
 REMEMBERED = 256
 """The number of texts whose groups are kept, because all matchers ask for the same texts."""
 _HASH, _SHIFT = 2654435761, 21
-"""Knuth's multiplicative hash: the upper 11 of 32 bits."""
+"""The factor of Knuth's multiplicative hash, and the shift that keeps the upper 11 of its 32 bits."""
 
 
 class Spelling:
@@ -26,7 +26,7 @@ class Spelling:
 
         counts = _counts(examples)
         spread = (counts > 0).sum(axis=0)
-        # Groups of letters that no example has count 0.
+        # Groups of letters that no example has get the weight 0.
         self._rarity = np.where(spread > 0, 1 + np.log(len(examples) / (1 + spread)), 0).astype(np.float32)
         vectors = self._vectors(counts)
         buckets, self._examples = np.nonzero(vectors.T)

@@ -28,7 +28,7 @@ class Tag:
     end: int
     """The position after the last character."""
     negated: bool
-    """Whether the text denies the value, or says that it is no longer so."""
+    """Whether the text denies the value, or says that it is no longer true."""
     score: float
     """The confidence, 0 to 1: the mean over the tokens."""
 

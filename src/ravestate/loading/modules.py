@@ -20,7 +20,7 @@ LIBRARIES = sys.stdlib_module_names | {"ravestate", "pydantic", "yaml"}
 
 
 def load_module(name: str, folder: Path = Path()) -> Module:
-    """Return a module by its built-in name, entry point, dotted path or file; paths are relative to `folder`.
+    """Return a module by its built-in name, entry point, dotted path or file; a file is relative to `folder`.
 
     Examples of names are ``rawio``, the entry point of an installed package, ``pkg.mod``, ``pkg.mod:module`` and
     ``./hello.py``. If there is no such module, or importing it fails, raise a `UsageError`.

@@ -65,7 +65,7 @@ class AgentSpec:
         return {"settings": self.settings, "seed": self.seed, "patience": self.patience}
 
     def read(self, path: Path) -> list[tuple[str, Path]]:
-        """Read the settings and numbers of an agent file, and add its mistakes to `faults`.
+        """Read the settings, the seed and the patience of an agent file, and add its mistakes to `faults`.
 
         Return the names of the file's modules, each with the folder of the file, for `load`. If the file cannot be read
         at all, raise a `UsageError`.

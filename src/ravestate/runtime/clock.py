@@ -11,7 +11,7 @@ import asyncio
 class Clock:
     """A clock that counts the seconds since a context started, without the time in which the clock was halted.
 
-    If another clock drives it, this other clock decides which time counts.
+    If another clock drives this one, this clock takes the other clock's time.
     """
 
     def __init__(self, loop: asyncio.AbstractEventLoop) -> None:
@@ -19,7 +19,7 @@ class Clock:
         self._origin = loop.time()
         self._halted: float | None = None
         self._driven: float | None = None
-        # future of a call of `sleep` → the time at which the call ends (seconds), and its timer
+        # future of a call of `sleep` → the time at which the call ends (seconds), and the call's timer
         self._sleepers: dict[asyncio.Future[None], tuple[float, asyncio.TimerHandle | None]] = {}
 
     def now(self) -> float:

@@ -1,4 +1,4 @@
-"""The generators behind an eager task (``eager_task.py``).
+"""The generators behind an `EagerTask`, which runs the functions of rules (see ``eager_task.py``).
 
 The compiled build leaves this file interpreted, because a task needs real generators.
 """
@@ -70,7 +70,7 @@ def host(eager: EagerTask) -> Generator[Any, Any, Any]:
             except GeneratorExit:
                 driver.close()
                 raise
-            except BaseException as thrown:  # the loop throws this into the coroutine below
+            except BaseException as thrown:  # `driver.throw` below raises this in the coroutine
                 error = thrown
         if eager.abandoned:
             driver.close()

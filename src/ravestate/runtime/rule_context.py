@@ -62,7 +62,7 @@ class RuleContext:
         """The object that code outside the rules passed to ``put`` or ``emit`` with the event that led to this run.
 
         It is None if that code passed no object, or if no event from outside led to the run: then the agent acts on its
-        own initiative. The object also passes through detached rules. If several spikes of the run have an object, the
+        own initiative. Runs after a detached rule get the object as well. If several spikes of the run have an object, the
         object of the youngest counts. The spikes of detached constraints count only if no other spike has an object.
         ``core:error`` has the object of the run that failed. ``core:activity``, ``core:pressure`` and the failure of a
         predicate have none.
@@ -229,7 +229,7 @@ class RuleContext:
 
     @property
     def random(self) -> random.Random:
-        """Random numbers from the context's seed. A rule should use no others, so that its tests are repeatable."""
+        """Random numbers from the context's seed. A rule should use no other ones, so that its tests are repeatable."""
         return self._host.random
 
     def _alive(self) -> None:

@@ -101,7 +101,7 @@ async def until_first_ends(*coroutines: Coroutine[Any, Any, object]) -> None:
 
 @contextlib.contextmanager
 def asked_by_signals(stop: Callable[[], None]) -> Generator[None]:
-    """Call `stop` at each SIGINT or SIGTERM; the second also aborts the body of the ``with``, without an error.
+    """Call `stop` at each SIGINT or SIGTERM; the second one also aborts the body of the ``with``, without an error.
 
     A cancellation by other code works as usual.
     """

@@ -28,6 +28,7 @@ from ravestate.runtime.listeners import Hooks, Listeners
 from ravestate.runtime.timer import Timer
 from ravestate.runtime.waits import Waits
 
+# In a round, the runner takes the engine's effects and performs them.
 ENDLESS = 200_000  # an instant of virtual time counts as endless after this many rounds of effects
 BATCH: Final = 512  # the loop gets a turn after this many rounds of effects, so that a busy agent still hears input
 TURN: Final = 0.02  # the loop gets a turn after this many real seconds, even after fewer rounds than `BATCH`
@@ -82,7 +83,7 @@ class Runner:
         self._hooks = hooks
         self._journal = journal
         self._is_virtual = hooks.on_endless is not None
-        self._home = get_ident()  # the number of the loop's thread
+        self._home = get_ident()  # the identifier of the loop's thread
         self._seed = seed
         self._random: random.Random | None = None
         self.functions = Functions(loop, self, is_virtual=self._is_virtual)
@@ -123,7 +124,7 @@ class Runner:
         return self._random
 
     def emit(self, signal: str, payload: Any, run: int | None, origin: Any = None) -> None:
-        """Raise a signal for a run, or for code outside the rules (None). Any thread may call this."""
+        """Raise a signal for a run; if `run` is None, for code outside the rules. Any thread may call this."""
         parts = self.short_way()
         if parts is not None:
             parts.emit(signal, payload, run, origin)
@@ -131,7 +132,7 @@ class Runner:
             self.receive(Emit(signal, payload, run, origin))
 
     def write(self, slot: str, value: Any, run: int | None, origin: Any = None) -> None:
-        """Write a slot for a run, or for code outside the rules (None). Any thread may call this."""
+        """Write a slot for a run; if `run` is None, for code outside the rules. Any thread may call this."""
         parts = self.short_way()
         if parts is not None:
             parts.write(slot, value, run, origin)

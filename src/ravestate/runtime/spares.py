@@ -46,7 +46,7 @@ class Spares:
         return self._variables
 
     def take(self, variables: contextvars.Context) -> EagerTask:
-        """Return a spare task with these context variables. If it stays free, pass it to `give` when done."""
+        """Return a spare task with these context variables. If it adopts no coroutine, `give` it back."""
         spare, self._spare = self._spare, None
         if spare is not None:
             if spare.suits(variables) and not spare.task.done():

@@ -72,10 +72,10 @@ class Waits:
         return {a.id: a for a in (*self._engine.running.values(), *self._engine.waiting)}
 
     async def until_others_end(self, known: Mapping[int, Activation], seconds: float) -> None:
-        """Wait until all activations outside `known` have ended, and none has a spike of ``rs.shutdown`` that is
-        too young.
+        """Wait until all activations outside `known` have ended, and no activation holds a spike of ``rs.shutdown``
+        that is younger than its `min_age`.
 
-        A background rule among `known` may restart endlessly. So wait for a new run of such a rule only if
+        A background rule with an activation in `known` may restart endlessly. So wait for a new run of such a rule only if
         ``rs.shutdown`` led to that run. In any case, wait for at most `seconds`.
         """
         engine = self._engine

@@ -171,7 +171,7 @@ async def _read(driver: Driver, user: str, count: int) -> list[str]:
 
 
 async def _end(driver: Driver, user: str, wanted: list[str]) -> None:
-    """Check that a user has received only these messages: send one more, and check that its answer comes next."""
+    """Check that a user has received only these messages: send `LAST`, and check that its answer comes next."""
     await driver.say(user, LAST)
     _agree(await _read(driver, user, len(wanted) + 1), [*wanted, LAST])
 
