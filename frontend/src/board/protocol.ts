@@ -105,7 +105,7 @@ export interface ClauseView {
   gates: GateView[];
   /** The addends of the pathway with the least utility. This pathway decides the clause's utility. */
   terms: Term[];
-  /** The number of the clause's pathways; at most 256, even if it has more. */
+  /** The number of the clause's pathways; at most 256, even if the clause has more. */
   pathways: number;
   /** The number of the clause's predicates. Each predicate adds ln 2. */
   predicates: number;
@@ -255,7 +255,7 @@ export interface Raiser {
   rule: string;
   /** The outcome of the rule's run, or `running`, or `not run`. */
   outcome: string;
-  /** The time at which the run ended (seconds). Without a run, the time at which the rule's furthest attempt stopped. None if neither has ended. */
+  /** The time at which the run ended (seconds). Without a run, the time at which the rule's furthest attempt stopped. The time is None while the run or the attempt is in progress, or if there was neither. */
   time: number | null;
   /** The outcome as a sentence. */
   words: string;
@@ -604,7 +604,11 @@ export interface Conversations {
   more: number;
 }
 
-/** A clause: its effective utility (nats), and its slot predicates: each as text, and whether it is true now. */
+/**
+ * A clause: its effective utility (nats), and its slot predicates.
+ *
+ * Each predicate is a pair: the predicate as text, and whether it is true now.
+ */
 export interface ExplainedClause {
   effective: number;
   gates: [string, boolean][];
@@ -679,7 +683,7 @@ export interface Error {
   code: string;
   /** An explanation for people. */
   text: string;
-  /** The type of the refused frame; empty if no single frame is refused. */
+  /** The type of the refused frame; empty if the fault is not in a frame that the server could read. */
   of?: string;
 }
 

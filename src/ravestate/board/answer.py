@@ -19,7 +19,7 @@ class Raiser:
         outcome: The outcome of the rule's run, or ``running``, or ``not run``.
         words: The outcome as a sentence.
         time: The time at which the run ended (seconds). Without a run, the time at which the rule's furthest attempt
-            stopped. None if neither has ended.
+            stopped. The time is None while the run or the attempt is in progress, or if there was neither.
     """
 
     rule: str
@@ -55,7 +55,7 @@ class WhyNot:
         verdict: The furthest step that an attempt of the rule reached.
         words: The reason for the verdict, as text.
         at: The time at which the verdict was decided (seconds); None while it is undecided.
-        clause: The number of the clause of the furthest attempt, from 0; None if there was no attempt.
+        clause: The index (from 0) of the furthest attempt's clause; None if there was no attempt.
         missing: The signals that the rule lacked; empty if it lacked none, or if the verdict has another reason.
         moments: The rule's history for the cause. If there are more than 200 moments, one moment takes the place of
             those in the middle.

@@ -57,7 +57,7 @@ class ClauseView:
     Attributes:
         condition: The clause as text.
         terms: The addends of the pathway with the least utility. This pathway decides the clause's utility.
-        pathways: The number of the clause's pathways; at most 256, even if it has more.
+        pathways: The number of the clause's pathways; at most 256, even if the clause has more.
         predicates: The number of the clause's predicates. Each predicate adds ln 2.
         utility: The sum of all addends.
         base: The effective utility (utility × weight) of a rule that has recovered.

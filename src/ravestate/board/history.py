@@ -34,7 +34,7 @@ class Attempt:
     rule: str
     clause: int
     records: list[t.Record] = field(default_factory=list[t.Record])
-    held: list[t.Held] = field(default_factory=list[t.Held])  # all spikes that it took, also those that it lost
+    held: list[t.Held] = field(default_factory=list[t.Held])  # all spikes that it took, including those that it lost
     lacks: tuple[str, ...] = ()
     complete: float | None = None
     waits: list[t.Waits] = field(default_factory=list[t.Waits])
@@ -163,9 +163,9 @@ class History:
         return next((a for a in self._answers if a.rule in hears and is_taken(a, hears[a.rule][a.clause])), None)
 
     def before(self, run: int) -> str:
-        """Return the name of another rule that raised one of the run's spikes; only spikes of the group count.
+        """Return the name of a rule, other than the run's own, that raised one of the run's spikes.
 
-        The name is empty if no other rule raised such a spike, or if the trace does not show the rule.
+        Only spikes of the group count. If there is no such rule, or the trace does not show it, the name is empty.
         """
         attempt = self._runs.get(run)
         if attempt is None or attempt.started is None:
@@ -251,7 +251,7 @@ class Rivals:
         self._first: dict[str, Attempt | None] = {}  # rule → the run of another rule that answered first
 
     def waited(self, rule: RuleView, attempt: Attempt) -> str:
-        """Return a phrase with the rules that the attempt last waited for; empty if it did not wait."""
+        """Return a phrase with the rules that the attempt last waited for; an empty text if it did not wait."""
         if not attempt.waits:
             return ""
         return f"it was ready and waited for {self.names(rule, attempt, attempt.waits[-1])}"
@@ -323,7 +323,7 @@ class Rivals:
         return min(1.0, (time - fired[runs - 1]) / rule.cooldown) if rule.cooldown and runs else 1.0
 
     def _answered(self, rule: RuleView, time: float) -> tuple[str, int]:
-        """Return the other rule that first answered the group, and the number of its activation.
+        """Return the rule, other than `rule`, that first answered the group, and the number of its activation.
 
         Only rules that write a slot of `rule` count, and only answers up to `time` (seconds). If the trace shows no
         such answer, return ``("another rule", 0)``.

@@ -37,7 +37,7 @@ SHARE = 0.015
 """The share of the event loop's time that one inspector may use. After a slow frame, the inspector waits longer, to
 keep to its share."""
 
-OF_SPARE = 0.5  # the share of the process's idle time that one inspector may use in addition
+OF_SPARE = 0.5  # the share of the process's idle time that one inspector may use in addition to `SHARE`
 MOST = 800  # the maximum number of records in a frame; a longer frame would delay the agent
 BACKLOG = 20_000  # the maximum number of past records that a new inspector gets
 
@@ -45,7 +45,7 @@ LAG = 25_000
 """An inspector may lag behind by this many records. If it lags further behind, the server skips to the present."""
 
 BURST, SPEED = 60, 30.0
-"""The rate limit for a page's commands: the size of a burst, and the number of commands per second after it."""
+"""The rate limit for a page's commands: `BURST` commands at once, and then `SPEED` commands per second."""
 
 LISTED = 1.0  # check the list of conversations once in this many seconds
 LIST = 100  # the maximum number of conversations in the list: the newest ones, and the one that the page shows

@@ -35,7 +35,7 @@ def check_value(slot: Slot[Any], value: object, holds: object) -> None:
 def check_payload(signal: Signal[Any], command: Emit, slot: Slot[Any] | None, holds: object = None) -> None:
     """Raise a `RavestateError` if a payload is missing, superfluous, or of the wrong type.
 
-    If the signal belongs to a slot, `slot` is that slot, and `holds` its current value.
+    If the signal belongs to a slot, `slot` is that slot, and `holds` is its current value.
     """
     if isinstance(slot, Collection):
         raise RavestateError(f"{signal.name} announces a change of the collection {slot.name}: write the slot instead")

@@ -240,7 +240,10 @@ class Conversations:
 
 @dataclass(frozen=True)
 class ExplainedClause:
-    """A clause: its effective utility (nats), and its slot predicates: each as text, and whether it is true now."""
+    """A clause: its effective utility (nats), and its slot predicates.
+
+    Each predicate is a pair: the predicate as text, and whether it is true now.
+    """
 
     effective: float
     gates: tuple[tuple[str, bool], ...]
@@ -319,7 +322,7 @@ class Error:
     Attributes:
         code: One word for programs.
         text: An explanation for people.
-        of: The type of the refused frame; empty if no single frame is refused.
+        of: The type of the refused frame; empty if the fault is not in a frame that the server could read.
     """
 
     code: str

@@ -237,7 +237,7 @@ class Recorders:
 
 
 def fair_length(lengths: list[int], in_all: int) -> int:
-    """Return the maximum length for each recorder, so that the total is at most `in_all`."""
+    """Return the maximum length for each recorder. With this limit, the total is at most `in_all`."""
     left = in_all
     for number, length in enumerate(sorted(lengths)):
         share = left // (len(lengths) - number)

@@ -64,7 +64,7 @@ class Recording:
     whole: bool
 
 
-KEPT = 4  # the maximum number of uploaded recordings that a server keeps; it drops the oldest first
+KEPT = 4  # the maximum number of uploaded recordings that a server keeps; the server drops the oldest first
 
 
 class Recordings:

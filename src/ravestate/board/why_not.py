@@ -24,7 +24,7 @@ MOST = 200
 
 Opens = Callable[[str, int, int, Any], bool | None]
 """A function that returns whether a slot predicate accepts a value, or None if it cannot tell. Its arguments are the
-name of the rule, the number of the clause, the number of the predicate, and the value."""
+name of the rule, the index of the clause, the index of the predicate in the clause, and the value."""
 
 
 def why_not(
@@ -56,13 +56,14 @@ def why_not(
 
 
 Reached = tuple[Verdict, str, float | None]
-"""The furthest step that an attempt reached, the reason as text, and the time at which it stopped there (seconds).
+"""The furthest step that an attempt reached, the reason as text, and the time at which this was decided (seconds).
 
-The time is None if the attempt is still in progress, or if there was no attempt.
+For a run that is in progress, the time is the start of the run. The time is None while an attempt holds spikes but does
+not run, or if none of the rule's signals occurred for the cause.
 """
 
 Judgement = tuple[Verdict, str, float | None, Attempt | None]
-"""The values of a `Reached`, and the attempt that reached the step; None if there was no attempt."""
+"""The values of a `Reached`, and the attempt that reached the step. The attempt is None if there was none."""
 
 ORDER = {verdict: place for place, verdict in enumerate(Verdict)}
 
@@ -245,7 +246,7 @@ class _Inquiry:
         return f"{why_given_up(last)} at {at}"
 
     def _passed(self, rule: RuleView, signal: str = "") -> list[Passed]:
-        """Return the records of the group's spikes that a rule heard but did not take: all, or those of one signal."""
+        """Return the records of the group's spikes that a rule did not take. With a `signal`, return only its records."""
         passed = [p for p in self.history.passed.get(rule.name, ()) if p.spike in self.history.group]
         return [p for p in passed if p.signal == signal] if signal else passed
 

@@ -36,7 +36,7 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
     asking = actions.add_parser("ask", help="ask a question, and see the passages found")
     asking.add_argument("question", nargs="+", metavar="QUESTION")
     for action in (indexing, listing, forgetting, asking):
-        _add_index(action, default=argparse.SUPPRESS)  # a default here would replace an option before the action
+        _add_index(action, default=argparse.SUPPRESS)  # a default here would replace an option given before the action
 
 
 def _add_index(parser: argparse.ArgumentParser, default: str | None) -> None:

@@ -26,7 +26,7 @@ def from_file(path: Path, node: str, namespace: str) -> Found:
     Args:
         path: The file. A launch file names it with ``--params-file``.
         node: The node's name.
-        namespace: Its namespace, such as ``/robot``.
+        namespace: The node's namespace, such as ``/robot``.
 
     Raises:
         UsageError: The file is missing, or is not a parameter file.
