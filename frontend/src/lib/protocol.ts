@@ -9,7 +9,7 @@ export const LONGEST_TEXT = 10000;
 /** The maximum number of bytes of a picture. */
 export const LONGEST_PICTURE = 100000;
 
-/** The code with which the WebSocket closes after an error. Any other error closes it with the code of `malformed`. */
+/** The WebSocket's closing code for each reason. An error without an entry has the closing code of `malformed`. */
 export const CLOSING_CODES = {
   ended: 1000,
   closing: 1001,

@@ -11,7 +11,7 @@ from collections.abc import Mapping, Sequence
 ENDING = 2.0
 """After its standard output is closed, a process may take this many seconds to end by itself; then it is killed."""
 LONGEST = 1 << 16
-"""`Child.end` reads only this many bytes, at the end of the error output."""
+"""`Child.end` reads the end of the error output: at most this many bytes."""
 
 
 class Child:
@@ -57,7 +57,7 @@ class Child:
 
     @property
     def pid(self) -> int | None:
-        """The process id, if the process runs."""
+        """The process id; None if the process does not run."""
         return self._process.pid if self._process.poll() is None else None
 
     @property

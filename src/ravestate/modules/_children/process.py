@@ -80,7 +80,7 @@ class ModelProcess:
 
     @property
     def pid(self) -> int | None:
-        """The process id, if the process runs."""
+        """The process id; None if the process does not run."""
         return self._process.pid if self._process is not None else None
 
     @property

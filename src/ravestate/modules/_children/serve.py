@@ -1,7 +1,7 @@
 """The main program of a model's process: it answers requests from standard input, one after another.
 
-`process` runs this file. The argument is a backend's program: ``python -P serve.py .../whisper.py``. The program is a
-file, or a folder with ``__init__.py`` and the files that it imports (``from . import ...``).
+``process.py`` runs this file. The argument is a backend's program: ``python -P serve.py .../whisper.py``. The program
+is a file, or a folder with ``__init__.py`` and the files that it imports (``from . import ...``).
 
 Each request and each answer is a line of JSON, followed by as many bytes as the line's ``size`` says. The first request
 is the backend's configuration, and its answer is ``{"ready": true}``. If a request fails, its answer has the reason in

@@ -16,7 +16,7 @@ from ravestate.modules import rawio
 from ravestate.modules._text import printable, without_controls
 
 FULL = (errno.ENOSPC, errno.EFBIG, errno.EDQUOT)
-"""The numbers of the errors which mean that there is no room for more output."""
+"""The error numbers (``errno``) that mean that there is no room for more output."""
 
 Ending = Literal["end of input", "interrupt", "closed"]
 
@@ -90,10 +90,10 @@ class Console:
         self.ending: Ending | None = None
         """Why the iteration ended: end of input (Ctrl-D), interrupt (Ctrl-C) or closed (output is gone).
 
-        None if it has not ended.
+        The value is None while the iteration goes on.
         """
         self.failure: PlatformError | None = None
-        """The error that made the output unusable, e.g. a full disk. None if the output works, or was merely closed."""
+        """The error that made the output unusable, e.g. a full disk; None if the output works, or was merely closed."""
 
     @property
     def interactive(self) -> bool:
@@ -168,7 +168,7 @@ class Console:
 
 
 def prepare() -> None:
-    """If the console is a terminal, load its library. Call this in a thread, because it blocks."""
+    """If the console is a terminal, load prompt_toolkit. Call this in a thread, because it blocks."""
     if is_terminal(sys.stdin, sys.stdout):
         with contextlib.suppress(ImportError):  # the console reports the missing package
             importlib.import_module(".terminal", __package__)

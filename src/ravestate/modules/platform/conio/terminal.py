@@ -28,7 +28,7 @@ LONGEST = 10_000
 """A line of this many characters ignores further keys, because the undo history may store the whole line for each key.
 A pasted text is always accepted whole."""
 
-_OPEN = "…"  # the mark at the end of a streamed line that the user has interrupted by entering a line
+_OPEN = "…"  # the mark of an interrupted text; the console adds it to a streamed line when the user enters a line
 
 
 class Terminal:

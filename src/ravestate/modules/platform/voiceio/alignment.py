@@ -83,7 +83,7 @@ def by_phonemes(text: str, spoken: Sequence[tuple[float, int]], length: float) -
     return _filled(text, places, times, length)
 
 
-# Pairs: how many written words may be spoken as how many words.
+# Pairs: a number of written words, and the number of words that a voice may speak for them.
 _STEPS = [(1, said) for said in range(1, _MOST + 1)] + [(2, 1), (3, 1), (4, 1)]
 
 

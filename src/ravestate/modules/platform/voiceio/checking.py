@@ -37,7 +37,7 @@ def check(settings: Settings) -> list[Line]:
 
 
 def require(settings: Settings) -> None:
-    """Check the recogniser, the microphone and the loudspeaker before a conversation begins.
+    """Check the packages, the recogniser, the microphone and the loudspeaker before a conversation begins.
 
     Raises:
         PlatformError: A part is missing; the message says how to get it.

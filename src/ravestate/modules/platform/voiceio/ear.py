@@ -1,7 +1,8 @@
 """Find the beginnings and pauses of the user's speech, and keep the sound of the turn so far.
 
 A *chunk* has `CHUNK` samples (32 ms). A chunk of speech is *articulate* if it comes from an open mouth (see
-`is_articulate`). An *onset* is the beginning of speech.
+`is_articulate`). An *onset* is the beginning of speech. A *turn* is the user's speech, with its short pauses, until the
+agent may answer.
 """
 
 from __future__ import annotations
@@ -74,7 +75,7 @@ class Turn:
     pitches: list[float | None] = field(default_factory=list[float | None])
     """The pitch (Hz) of each chunk; None for a chunk without a voice."""
     continued: tuple[int, float, float] | None = None
-    """How the turn last continued after a pause: the index of the first new chunk, its time, and the time at which
+    """How the turn continued after its last pause: the index of the first new chunk, its time, and the time at which
     the pause began."""
 
     @property

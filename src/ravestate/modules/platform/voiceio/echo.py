@@ -14,7 +14,7 @@ FRAME = 320
 TAIL = 4096
 """The canceller removes echoes that arrive within this many samples (256 ms)."""
 
-# The numbers of requests to the library.
+# The codes of requests to the library.
 _SET_RATE, _SET_DENOISE, _SET_STATE, _SET_SUPPRESS, _SET_SUPPRESS_ACTIVE = 24, 0, 24, 20, 22
 
 

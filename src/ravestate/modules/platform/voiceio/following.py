@@ -1,4 +1,4 @@
-"""Follow the user's sound, from the first block of a line to the last one."""
+"""Follow the user's sound on a line (microphone and loudspeaker), from the first block to the last one."""
 
 from __future__ import annotations
 

@@ -16,9 +16,10 @@ MEMORY = 16
 SILENT = 100.0
 """A frame with less power than this counts as silence."""
 FIRST = 10 ** (-13 / 10)
-"""The expected share of the loudspeaker's power at first, before the canceller has adapted to the room."""
+"""The share of the loudspeaker's power that is expected in the cleaned sound at first, before the canceller has adapted
+to the room."""
 LEAST, MOST = 1e-6, 0.25
-"""The limits of the expected share."""
+"""The smallest and the greatest expected share."""
 CLEAR = 10.0
 """Sound with this many times the expected power (10 dB more) is another voice."""
 DOWN, UP, SLOWLY = 10 ** (-0.03), 10**0.09, 10**0.01
@@ -39,20 +40,22 @@ TWICE = 2
 DOUBTFUL = 12
 """A line counts as free of echo after this many frames (0.24 s) with sound on both sides, but without an echo."""
 QUIET = 0.25
-"""A frame in which the microphone is silent counts only this much towards `DOUBTFUL`, because an echo may be late."""
+"""A frame in which the microphone is silent counts as only this part of a frame towards `DOUBTFUL`, because an echo may
+be late."""
 OFTEN, SELDOM = 2, 8
 """The two sounds are compared once in `OFTEN` frames until the first decision, and once in `SELDOM` frames after it. A
 comparison takes milliseconds."""
 GONE = 250
-"""The same as `DOUBTFUL`, but for a line that has had an echo (5 s). The number is greater, because a person may
-speak so loudly that no echo is found."""
+"""The number of frames (5 s) that replaces `DOUBTFUL` on a line that has had an echo. It is greater, because a person
+may speak so loudly that no echo is found."""
 
 
 class Leak:
     """Estimates which share of the loudspeaker's power stays in the cleaned sound of the microphone.
 
-    On a line without echo (headphones, a recording), no sound counts as the agent's. The likeness of the two sounds
-    shows whether a line has an echo. Their levels do not show it, because a user may speak as loudly as an echo.
+    On a line (microphone and loudspeaker) without echo, for example with headphones, no sound counts as the agent's.
+    The likeness of the two sounds shows whether a line has an echo. Their levels do not show it, because a user may
+    speak as loudly as an echo.
     """
 
     def __init__(self) -> None:

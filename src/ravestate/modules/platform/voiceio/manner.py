@@ -6,7 +6,8 @@ from collections.abc import Mapping
 from dataclasses import dataclass
 
 SLOWEST, MOST = 0.25, 4
-"""The least rate of a voice, and the greatest factor. A voice with other factors fails, or takes too long."""
+"""The smallest `rate` of a `Prosody`, and the greatest value of each of its factors. Beyond these limits, a voice fails
+or takes too long."""
 
 
 @dataclass(frozen=True, slots=True)

@@ -84,7 +84,10 @@ def fetch_whisper(name: str, progress: Callable[[str], None]) -> Path:
 
 
 def piper_voice(name: str) -> Path | None:
-    """Return the file of a voice for Piper, by its path or its name in `folders`. An empty name fits any voice."""
+    """Return the file of a voice for Piper, by its path or its name in `folders`; None if there is none.
+
+    An empty name fits any voice.
+    """
     if name and Path(name).expanduser().suffix == ".onnx" and Path(name).expanduser().is_file():
         return Path(name).expanduser().absolute()
     for folder in folders():

@@ -25,8 +25,8 @@ FAINT = 0.1
 """Sound at the end of a word counts as a pause if its level is below this share of the word's greatest level."""
 DRIFT = 0.06
 """The echo's reference is the loudspeaker's sound for the echo canceller. The position in the reference advances by
-the length of the microphone's sound. If it differs by more than this many seconds from the seconds that the loudspeaker
-has played, it jumps to those."""
+the length of the microphone's sound. If it differs from the loudspeaker's position by more than this many seconds, the
+mouth takes over the loudspeaker's position."""
 LEAD = 4.0
 """If the loudspeaker's queue has more than this many seconds of sound, the mouth waits before it synthesises more."""
 KEPT = 30.0
@@ -107,7 +107,7 @@ class Mouth:
         self.said = ""
         """The last queued sentences. With them, the agent recognises its own words in the microphone's sound."""
         self.speaking = False
-        """Whether an utterance is being spoken, even if the speech is held."""
+        """Whether an utterance is being spoken, even if the speech is held (paused by `hold`)."""
         self.silent_since: float | None = None
         """The time at which `hold` stopped the speech; None if the speech is not held."""
         self._queue: list[_Queued] = []
@@ -126,7 +126,7 @@ class Mouth:
 
     @property
     def position(self) -> float:
-        """How many seconds of sound the line has played. While the speech is held, the position at which it stopped."""
+        """How many seconds of sound the line has played; while the speech is held, the position at which it stopped."""
         return self.line.played if self._held_at is None else self._held_at
 
     @property

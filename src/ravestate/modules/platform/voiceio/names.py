@@ -22,7 +22,8 @@ another_speaks: rs.Signal[Turn] = module.signal("another_speaks", payload=cast("
 """Another person has begun to speak after the first one. The payload is the first person's turn."""
 
 utterance: rs.Signal[Utterance] = module.signal("utterance", payload=Utterance)
-"""The user has finished a turn. The words also go to ``rawio.input`` if the recogniser is confident enough."""
+"""The user has finished a turn, so the agent may answer. The words also go to ``rawio.input`` if the recogniser is
+confident enough."""
 
 user_speaking = module.flag("user_speaking")
 """True while the user speaks. It becomes false after `pause` seconds of silence."""
@@ -37,7 +38,8 @@ spoke_up = module.signal("spoke_up", keep="latest")
 """The user's sound is certainly articulate speech, not a hum or a cough."""
 
 back_channel = module.signal("back_channel", payload=str)
-"""The user has only shown that they listen ("mhm", "yes", laughter) while the agent was speaking."""
+"""The user has only shown that they listen ("mhm", "yes", laughter) while the agent was speaking. The payload is their
+words."""
 
 false_alarm = module.signal("false_alarm", payload=str)
 """The sound was not a user's turn, but noise, a cough or the agent's own voice. The payload is the reason."""

@@ -13,7 +13,7 @@ from .sound import Samples
 FRAME = 640
 """The number of samples in a frame (40 ms)."""
 LOWEST, HIGHEST = 70.0, 400.0
-"""The range of speaking voices (Hz)."""
+"""The lowest and the highest pitch of speaking voices (Hz)."""
 PERIODIC = 0.6
 """A frame is voiced if its autocorrelation at one period is greater than this."""
 ENOUGH = 8

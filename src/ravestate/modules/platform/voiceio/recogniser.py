@@ -37,7 +37,7 @@ class Recognised:
     Attributes:
         text: The words; empty if there are none.
         confidence: The recogniser's confidence, from 0 to 1.
-        last: The candidates for the last word, with their probabilities. Empty if the recogniser gives no candidates.
+        last: The candidates for the last word, with their probabilities; empty if the recogniser gives none.
     """
 
     text: str

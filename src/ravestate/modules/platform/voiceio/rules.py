@@ -50,7 +50,8 @@ if TYPE_CHECKING:
 async def listen(ctx: rs.RuleContext) -> rs.Resign | None:
     """Open the line. Note when the user begins to speak or pauses, and when another person begins to speak.
 
-    Raise ``spoke_up`` as soon as the sound is certainly speech, not a hum or a cough.
+    A line is a microphone and a loudspeaker. Raise ``spoke_up`` as soon as the sound is certainly speech, not a hum or
+    a cough.
     """
     settings: Settings = ctx.settings
     line = ctx[rawio.sound]

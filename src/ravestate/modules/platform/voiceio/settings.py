@@ -59,7 +59,8 @@ class Settings(rs.Settings):
     speech: Share = 0.5
     """The minimum probability of speech for a sound to count as speech."""
     pause: Annotated[float, Field(ge=0.1, allow_inf_nan=False)] = 0.2
-    """This many seconds of silence are a pause, and end a turn whose words and melody are complete."""
+    """This many seconds of silence are a pause. They also end a turn whose words and melody (rise and fall of the
+    voice) are complete."""
     doubtful_pause: Seconds = 1.2
     """This many seconds of silence end a turn that may be incomplete."""
     longest_pause: Seconds = 1.4

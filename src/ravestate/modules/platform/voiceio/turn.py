@@ -29,7 +29,7 @@ ANOTHER = 0.03
 """The recogniser's candidates for the last word may include words that seldom end a sentence, such as *my*. If these
 have at least this probability together, it is doubtful whether the turn is over."""
 UNCLEAR = 0.3
-"""If no candidate has this probability, the last word is unclear, for example because it was cut off."""
+"""If the probability of every candidate is below this, the last word is unclear, for example because it was cut off."""
 
 _SOUND = re.compile(r"a?(?:ha|he|hi|ho|heh|hah)+h?|(?:[mnh]+[-.]?)+|m(?:[-.][a-z]{1,2})*[-.][mnh]+")
 """Laughter and hums in a recogniser's spelling: "hahaha", "mm-hmm", "m-h-m", "m-a-k-m"."""

@@ -32,9 +32,9 @@ class Access:
     """Checks each request before the server answers it.
 
     A page that only this machine can reach needs no token, so any site in this machine's browser could talk to it. Two
-    checks prevent that. Against DNS rebinding, the server answers only to the names of this machine and of the origins
-    in the settings. And it accepts requests of web sites only from its own origin and from the origins in the settings.
-    All methods expect header names in lower case.
+    checks prevent that. Against DNS rebinding, a server without a token answers only to the names of this machine and
+    of the origins in the settings. And any server accepts requests of web sites only from its own origin and from the
+    origins in the settings. All methods expect header names in lower case.
     """
 
     def __init__(self, settings: Settings) -> None:
@@ -56,7 +56,7 @@ class Access:
         return None
 
     def refusal_of_board(self, headers: Mapping[str, str]) -> str | None:
-        """Return why a request may not reach the board; None if it may. Only the agent's own page may reach it."""
+        """Return why a request may not reach the board (Raveboard); None if it may. Only the agent's own page may."""
         origin, host = headers.get("origin", "").lower(), headers.get("host", "").lower()
         if origin and not _is_own(origin, host):
             return (
@@ -88,7 +88,7 @@ class Access:
         )
 
     async def check_token(self, token: str | None) -> None:
-        """Refuse a wrong token with a `ProtocolError`, after a pause."""
+        """Raise a `ProtocolError` if the token is wrong (after a pause) or missing."""
         if not self.admits(token):
             if token:
                 await asyncio.sleep(PAUSE)

@@ -81,7 +81,8 @@ class AccessMiddleware:
     """Middleware that refuses requests without access, and adds headers that restrict scripts and frames.
 
     The log names sites that try to embed the page without permission, because their visitors see only an empty frame.
-    One instance guards the whole application; a second one, `inside`, guards the board, which no other site may reach.
+    One instance guards the whole application. A second one, with `inside=True`, guards the board (Raveboard), which no
+    other site may reach.
     """
 
     def __init__(self, app: ASGIApp, *, inside: bool = False) -> None:

@@ -113,7 +113,7 @@ class Bucket:
         self._time = now
 
     def wait(self, now: float) -> float:
-        """Count an event, even beyond the limit. Return how many seconds it must wait to keep to the limit."""
+        """Count an event, even beyond the limit. Return how many seconds the event must wait to keep to the limit."""
         self._fill(now)
         self._level -= 1
         return max(0.0, -self._level / self._rate)

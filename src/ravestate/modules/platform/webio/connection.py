@@ -21,17 +21,20 @@ if TYPE_CHECKING:
     from .sessions import Sessions
 
 BURST, RATE = 20, 5.0
-"""How many frames a client may send in a burst, and per second after it. The server delays further frames, but drops
-none. `Writing` frames have their own limit with the same numbers. The server ignores further `Writing` frames."""
+"""A client may send a burst of `BURST` frames, and then `RATE` frames per second. The server delays further frames, but
+drops none. `Writing` frames have a separate limit of the same size; beyond it, the server ignores them."""
 
 SOUND_BURST, SOUND_RATE = 2 * 32_000, 1.25 * 32_000
-"""How many bytes of sound a client may send in a burst (2 s), and per second after it. The server ignores the rest."""
+"""A client may send a burst of `SOUND_BURST` bytes of sound (2 s), and then `SOUND_RATE` bytes per second. The server
+ignores the rest."""
 
 REPORTS_BURST, REPORTS_RATE = 40, 20.0
-"""How many `Played` frames a client may send in a burst, and per second after it. The server ignores the rest."""
+"""A client may send a burst of `REPORTS_BURST` `Played` frames, and then `REPORTS_RATE` per second. The server ignores
+the rest."""
 
 PICTURES_BURST, PICTURES_RATE = 20, 20.0
-"""How many pictures a client may send in a burst, and per second after it. The server delays further pictures."""
+"""A client may send a burst of `PICTURES_BURST` pictures, and then `PICTURES_RATE` per second. The server delays
+further pictures."""
 
 REPLIES = 32  # the maximum number of unsent replies to a client
 
@@ -41,7 +44,8 @@ HELLO = f'{{"type": "hello", "v": {VERSION}}}'
 class Connection:
     """Carries the protocol over one WebSocket that is not accepted yet.
 
-    `inside` is the path of the board. For `title`, `suggestions`, `note` and `privacy`, see `Settings`.
+    A *line* carries sound between the visitor's browser and the agent (see `PageLine`). `inside` is the path of the
+    board (Raveboard). For `title`, `suggestions`, `note` and `privacy`, see `Settings`.
     """
 
     def __init__(

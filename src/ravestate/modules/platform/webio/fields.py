@@ -38,7 +38,7 @@ CLOSING_CODES = {
     "silent": 4408,
     "behind": 4409,
 }
-"""The code with which the WebSocket closes after an error. Any other error closes it with the code of ``malformed``."""
+"""The WebSocket's closing code for each reason. An error without an entry has the closing code of ``malformed``."""
 
 
 class ProtocolError(PlatformError, ValueError):

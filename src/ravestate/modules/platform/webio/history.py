@@ -69,7 +69,7 @@ class History:
         return list(self._marks)[-new:] if new > 0 else []
 
     def recent(self, speaker: Speaker, most: int) -> list[Message]:
-        """Return the newest messages of a speaker, newest first."""
+        """Return the newest messages of a speaker (at most `most`), the newest first."""
         said = (message for message in reversed(self._messages) if message.speaker == speaker)
         return list(itertools.islice(said, most))
 

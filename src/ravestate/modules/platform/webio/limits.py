@@ -117,7 +117,7 @@ class LimitedWebSocket(WebSocketsSansIOProtocol):
         self.logger = log
 
     async def send(self, message: Any) -> None:
-        """Send a message to the client, unless the server has closed the connection because of a fault."""
+        """Send a message; raise `ClientDisconnected` if the server has closed the connection because of a fault."""
         if self.close_sent:
             raise ClientDisconnected
         await super().send(message)

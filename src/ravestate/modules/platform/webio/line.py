@@ -204,7 +204,7 @@ class PageLine:
     def fetch(self, window: Window) -> memoryview | None:
         """Return the next sound for a window, at most `CHUNK` bytes.
 
-        Return None if no sound waits, if the window does not have the line, or if it has `AHEAD` unplayed samples.
+        Return None if no sound waits, or if the window does not have the line, or already has `AHEAD` unplayed samples.
         """
         if self.window is not window or not self._waiting or self._sent - self._reported >= AHEAD:
             return None

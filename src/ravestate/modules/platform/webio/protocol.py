@@ -42,8 +42,8 @@ def parse(text: str | bytes, frames: TypeAdapter[F]) -> F:
         frames: The kinds of frames to accept: `CLIENT` or `SERVER`.
 
     Raises:
-        ProtocolError: The text is not such a frame. The code is ``version`` for another version, ``too-long`` or
-            ``empty`` for a `Say` whose text is refused, else ``malformed``.
+        ProtocolError: The text is not such a frame. The code is ``version`` for another version of the protocol,
+            ``too-long`` or ``empty`` for a `Say` whose text is refused, else ``malformed``.
     """
     if not isinstance(text, str):
         raise _malformed("a frame is a text message, not a binary one")

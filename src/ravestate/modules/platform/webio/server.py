@@ -135,7 +135,7 @@ class Server:
 
     @property
     def address(self) -> str:
-        """The address of the page; if the server listens on all addresses, it contains this machine's name."""
+        """The address of the page; if the server listens on all addresses, the result contains this machine's name."""
         host = self._settings.host.strip("[]")
         if host in ("0.0.0.0", "::"):
             host = socket.gethostname()

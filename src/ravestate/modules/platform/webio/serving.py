@@ -42,7 +42,7 @@ def app(agent: Agent, routes: Iterable[BaseRoute] = (), inside: str | None = Non
     Args:
         agent: An agent with ``webio`` among its modules.
         routes: Further routes, protected by the same checks of host and origin as the page.
-        inside: The path of the board among those routes, e.g. ``board/``.
+        inside: The path of the board (Raveboard) among those routes, e.g. ``board/``.
 
     Raises:
         PlatformError: starlette, uvicorn or websockets is not installed. Or the agent lacks `webio`, or has `conio`.

@@ -32,7 +32,7 @@ GRACE = 0.3  # after the visitor's words, the page waits this many seconds befor
 RECENT = 5  # `mark_heard` searches this many of the agent's newest messages
 LONGEST_CAPTION = 1000  # the maximum number of characters in a caption
 WORD = re.compile(r"\S+")
-LINGER = 30.0  # the line stays in ``rawio.sound`` for this many seconds after the microphone has gone off
+LINGER = 30.0  # after the microphone has gone off, the audio line stays in ``rawio.sound`` for this many seconds
 FAREWELL = 5.0  # the agent may take this many seconds to say goodbye
 
 log = logging.getLogger("ravestate.webio")

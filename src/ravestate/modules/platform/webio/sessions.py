@@ -105,7 +105,11 @@ class Sessions:
         self._timers[session] = asyncio.get_running_loop().call_later(self._keep, self.leave, session, Ending.ABANDONED)
 
     async def _make_room(self) -> None:
-        """End the conversation that has had no window for the longest time. Prefer one whose visitor never spoke."""
+        """End one conversation without a window, if there is one.
+
+        Conversations whose visitors never spoke end first. Among equals, the one that has had no window for the longest
+        time ends first.
+        """
         abandoned = min(self._timers, key=lambda session: session.spoken, default=None)
         if abandoned is not None:
             task = self._tasks[abandoned]

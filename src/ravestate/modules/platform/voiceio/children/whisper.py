@@ -20,7 +20,7 @@ MOST = 8
 PHRASE = 3
 """A repeated phrase is cut off if it has at least this many words. People do repeat shorter phrases ("no, no")."""
 PLAUSIBLE = 0.02
-"""An alternative for the last word is reported if its probability is greater than this."""
+"""A candidate for the last word is reported if its probability is greater than this."""
 POOR = -1.0
 """If the mean log probability of the tokens is below this, the backend tries again with windows of 30 seconds."""
 REPEATED = 2.4
