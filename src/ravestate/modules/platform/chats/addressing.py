@@ -21,7 +21,9 @@ def command_in(text: str) -> str | None:
 def addressed(
     text: str, handles: Iterable[str], names: Iterable[str], *, group: bool, called: bool = False
 ) -> tuple[str | None, str] | None:
-    """Return the command and the words for the agent in a message; None if the message is not for the agent.
+    """Return the command in a message (None if it has no command), and the words for the agent.
+
+    If the message is not for the agent, return None instead of this pair.
 
     Args:
         text: The message.

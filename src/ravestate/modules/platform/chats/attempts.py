@@ -7,20 +7,20 @@ import logging
 import random
 
 FIRST_WAIT, LONGEST_WAIT = 0.5, 60.0
-"""The first and the longest wait between two attempts (seconds). Each wait is about twice as long as the previous
-one."""
+"""The first wait between two attempts, and the length that no wait exceeds (seconds). Each wait is about twice as long as
+the wait before it."""
 
 TOLD = 3
 """After this many failures in a row, the next failure is logged as a warning."""
 
 
 def back_off(attempt: int) -> float:
-    """Return how many seconds to wait after attempt number `attempt` (from 0). The result has a random part."""
+    """Return how many seconds to wait after the attempt with index `attempt` (from 0). The result has a random part."""
     return min(LONGEST_WAIT, FIRST_WAIT * 2 ** min(attempt, 16)) * random.uniform(0.75, 1.0)
 
 
 class Attempts:
-    """Counts the consecutive failures of an operation. Waits after each failure: each time about twice as long.
+    """Counts the consecutive failures of an operation. After each failure, waits about twice as long as before.
 
     Args:
         log: The logger of the platform.

@@ -45,7 +45,7 @@ FAREWELL = 10.0
 
 
 class Chat:
-    """A conversation that rests after a silence, and continues with the next message.
+    """A conversation that rests (has no context) after a silence, and continues with the next message.
 
     The agent hears the messages in order. A message is done when no rule can write an answer to it any longer. One
     transaction stores the answers, and marks the message as done. So if the process dies, no message is lost or

@@ -36,7 +36,7 @@ class Draft:
         self._grown = asyncio.Event()
 
     def grow(self, piece: str, cause: Entry | None) -> None:
-        """Add a piece to the growing answer to a message (None: to no message)."""
+        """Add a piece to the growing answer to a message. If `cause` is None, the words answer no message."""
         if cause in self._cut:
             self.take(cause)  # the words before the cut belong to another answer
         self._texts[cause] = self._texts.get(cause, "") + without_controls(piece)

@@ -115,7 +115,7 @@ class Carrier(Protocol):
     longest: int
     """The maximum number of characters in a message; longer texts are sent as several messages."""
     longest_caption: int
-    """The maximum number of characters below a picture or a voice note; the other words follow in more messages."""
+    """The maximum number of characters below a picture or a voice note; the remaining words follow in further messages."""
     rate: float
     """The maximum number of messages per second, over all chats."""
 

@@ -27,8 +27,8 @@ T = TypeVar("T")
 E = TypeVar("E")
 
 LAST_WORDS = 5.0
-"""When the agent ends, it has this many seconds for its last answers, and then as many for their delivery. The next
-process does the rest."""
+"""When the agent ends, it has this many seconds for its last answers, and then the same time for their delivery.
+The next process answers and delivers the rest."""
 
 
 class Room:
@@ -188,7 +188,7 @@ class Room:
                 del self._chats[chat.id]
 
     def make_room(self) -> None:
-        """If too many chats are awake, put idle ones to rest: the chats with the longest silence first."""
+        """If too many chats are awake (not at rest), put idle chats to rest: the chats with the longest silence first."""
         if len(self._tasks) > self._limit:
             staying = [chat for chat in self._tasks if not chat.leaving]
             idle = sorted((chat for chat in staying if not chat.busy), key=lambda chat: chat.last_active)

@@ -19,11 +19,15 @@ SHOWN = 2.0
 """A message waits at most this many seconds for the end of a request that shows its draft."""
 
 BURST = 0.15
-"""After a pause, the first turns need no wait: the turns that fit into this many seconds (about 4 at 25 per second)."""
+"""After a pause, the first turns (see `Pace`) need no wait: the turns that fit into this many seconds (about 4 at 25 per
+second)."""
 
 
 class Pace:
-    """A rate limit: ``await pace.turn()`` waits for the next turn. There are at most `rate` turns per second."""
+    """A rate limit: each request needs a turn. There are at most `rate` turns per second.
+
+    ``await pace.turn()`` waits for the next turn.
+    """
 
     def __init__(self, rate: float) -> None:
         self._gap = 1.0 / rate

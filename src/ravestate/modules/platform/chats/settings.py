@@ -32,7 +32,7 @@ class ChatSettings(rs.Settings):
     rest: float = pydantic.Field(600.0, gt=0, allow_inf_nan=False)
     """A chat rests after this many seconds of silence."""
     chats: int = pydantic.Field(1000, ge=1)
-    """The maximum number of chats that are awake at a time. Only chats with unanswered messages may exceed it."""
+    """The maximum number of chats that are awake (not at rest). Only chats with unanswered messages may exceed it."""
     path: Path | None = None
     """The file with unanswered and undelivered messages. By default, a file for each account in the user's data folder."""
 

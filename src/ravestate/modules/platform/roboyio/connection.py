@@ -34,7 +34,7 @@ class Connection:
         node: The node; this class does not close it.
         sleep: A function that waits for some seconds on the context's clock.
         now: A function that returns the time on the context's clock (seconds).
-        speech_timeout: The robot may speak an utterance for this many seconds.
+        speech_timeout: The robot may take at most this many seconds to speak an utterance.
     """
 
     def __init__(
@@ -89,7 +89,7 @@ class Connection:
             self.node.subscribe(port.topic, port.type, take, latest=False, qos=QUALITY)
 
     async def say(self, text: str) -> None:
-        """Let the robot speak a text. If it speaks through a service, wait for the answer; through a topic, do not wait.
+        """Let the robot speak a text. If it speaks through a service, wait for the answer; a topic gives no answer.
 
         Raises:
             PlatformError: The robot does not answer, or refuses to speak.

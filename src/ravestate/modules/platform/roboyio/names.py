@@ -28,7 +28,7 @@ class Settings(rs.Settings):
     """The settings of roboyio: the robot, and the connection to it."""
 
     link: Literal["bus", "ros1", "ros2"] = "bus"
-    """``bus`` for the stand-in robot, ``ros1`` or ``ros2`` for a robot."""
+    """``bus`` for the stand-in (a simulated robot on a page), ``ros1`` or ``ros2`` for a robot."""
     robot: NameOrPath = "roboy"
     """``roboy``, ``turtlebot``, or the path of a data file of your own."""
     bus: str = "127.0.0.1:7411"

@@ -1,7 +1,7 @@
 """The built-in bus, which replaces ROS for an agent and the stand-in robot on a machine without ROS.
 
-The bus is a server on a local TCP port. It uses the frames of a bridge process (``children/pipe.py``), and passes
-messages and calls from one node to the others.
+The bus is a server on a local TCP port. It exchanges frames (a head and a body), as a bridge process does
+(``children/pipe.py``), and passes messages and calls from one node to the others.
 """
 
 from __future__ import annotations

@@ -1,4 +1,4 @@
-"""The open calls of a node: calls of services, goals for actions, and questions about the network."""
+"""The open calls of a node (they wait for answers): calls of services, goals, and questions about the network."""
 
 from __future__ import annotations
 

@@ -26,10 +26,10 @@ class Carrier(Protocol):
 
 @dataclass(eq=False, slots=True)
 class Channel:
-    """One topic, service or action of a node. `close` ends it.
+    """A node's access to one topic, service or action. `close` ends the access.
 
     Attributes:
-        number: The channel's number on the link.
+        number: The channel's number on the link (the bridge process or the bus).
         binding: The description of the channel for the bridge.
         type: The full name of the type.
         take: The function that gets each message of a subscription.

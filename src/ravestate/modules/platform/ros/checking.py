@@ -19,7 +19,7 @@ OTHERS = {"subscriber": "publishers", "publisher": "subscribers", "service": "se
 PLACES = {"subscriber": "topics", "publisher": "topics", "service": "services", "action": "actions"}
 
 LOOKS = 8
-"""Give up after this many looks at the network. Other nodes show up one by one."""
+"""Look at the network up to this many times, because other nodes show up one by one."""
 PAUSE = 0.4
 """The seconds between two looks."""
 
@@ -40,7 +40,7 @@ class Line:
     Attributes:
         good: Whether the slot or part is without faults.
         what: The name of the slot or part.
-        text: The binding. Then the nodes at the other end, or a fault with its remedy.
+        text: The binding, followed by the nodes at the other end, or by a fault with its remedy.
     """
 
     good: bool
@@ -49,7 +49,7 @@ class Line:
 
 
 async def check(node: Node, slots: Iterable[Bound]) -> list[Line]:
-    """Check the slots or parts that are bound to one node against the network.
+    """Compare the slots or parts that are bound to one node with the network.
 
     Raises:
         PlatformError: ROS is not installed here, or there is no master.

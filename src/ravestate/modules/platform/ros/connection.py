@@ -105,7 +105,7 @@ class FromPublisher(_Connection):
         take: A function to call on the loop with each message, and with True if the message is the newest one so far.
         lost: A function to call once on the loop when the publisher closes the connection, or sends invalid data.
         warn: A function to call with a sentence about data that are not a message.
-        first: The bytes that were already read.
+        first: The bytes that the bridge has already read.
     """
 
     def __init__(

@@ -16,7 +16,8 @@ from .connection import FromPublisher, ToSubscriber
 class Publisher:
     """A publisher of another node.
 
-    If the publisher latches, `last` is its last message. The channels in `late` still wait for this message.
+    If the publisher latches (keeps its last message for late subscribers), `last` is this message. The
+    channels in `late` still wait for it.
     """
 
     topic: str
@@ -123,7 +124,7 @@ class Connections:
         if channel in self._readers[channel.name]:  # the channel has not been closed meanwhile
             try:
                 channel.offer(body, newest=newest)
-            except Exception as error:  # other channels must still get this message, and later ones
+            except Exception as error:  # the other channels must still get this message
                 text = f"{channel.name}: a message failed"
                 asyncio.get_running_loop().call_exception_handler({"message": text, "exception": error})
 

@@ -27,7 +27,7 @@ PASSED = 2
 LARGE = 1 << 16
 """A body of at least this many bytes travels in shared memory."""
 BLOCK = 1 << 16
-"""The bytes to read in one call. To allocate a larger buffer would take longer than to read a short message."""
+"""Read at most this many bytes in one call. To allocate a larger buffer would take longer than to read a short message."""
 TURN = 64
 """After handling this many frames, give other tasks a turn."""
 

@@ -15,7 +15,7 @@ PROFILES: Mapping[str, Mapping[str, Any]] = {
     "sensor_data": {**QUALITY, "depth": 5, "reliability": "best_effort"},
     "latched": {**QUALITY, "depth": 1, "durability": "transient_local"},
 }
-"""The profiles by name."""
+"""The profiles of ROS 2 for the quality of service, by name."""
 
 CHOICES = {"reliability": ("reliable", "best_effort"), "durability": ("volatile", "transient_local")}
 
@@ -51,7 +51,7 @@ def quality(qos: str | Mapping[str, Any] | None, *, depth: int, latch: bool) -> 
     Args:
         qos: The name of a profile, or some of the values ``depth``, ``reliability`` and ``durability``. None is the
             default.
-        depth: The depth, if `qos` has no depth.
+        depth: How many messages to queue at most, if `qos` has no depth.
         latch: Whether late subscribers get the last message.
 
     Raises:

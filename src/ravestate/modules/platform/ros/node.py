@@ -24,7 +24,8 @@ from .naming import resolve
 from .types import Types
 
 TOLD = 100
-"""A node logs at most this many different texts. A text of level `info`, or a new link, resets the count."""
+"""A node logs at most this many different texts. A text of level `info`, or a new link (see `Link`), resets the
+count."""
 WAITING = 1000
 """At most this many frames wait while the bridge starts. If there are more, the node drops the oldest ones."""
 LEAVING = 2.0
@@ -278,7 +279,7 @@ class Node:
             self._calls.close(call)
 
     async def graph(self, timeout: float = 10.0) -> dict[str, list[dict[str, Any]]]:  # noqa: ASYNC109  # a public name
-        """Return the network's ``topics``, ``services`` and ``actions``: their names, types and numbers of nodes.
+        """Return the network's ``topics``, ``services`` and ``actions``: names, types, and how many nodes use them.
 
         Raises:
             PlatformError: The bridge fails, or does not answer within `timeout` seconds.

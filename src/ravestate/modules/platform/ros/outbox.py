@@ -14,7 +14,7 @@ class Outbox:
 
     Args:
         sock: The connected socket; its owner closes it.
-        failed: A function to call when the other end is gone, so that the socket accepts no more data.
+        failed: A function to call when the other end is gone, and the socket accepts no more data.
         depth: The maximum number of pieces that wait behind the first one. A further piece replaces the oldest of
             them. By default, there is no limit.
     """

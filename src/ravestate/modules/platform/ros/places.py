@@ -19,7 +19,7 @@ from ravestate.folders import user_folder
 CHILDREN = Path(__file__).with_name("children")
 
 PATIENCE = 10.0
-"""After this many seconds without an answer, an interpreter counts as one that does not have a package."""
+"""If an interpreter has not answered after this many seconds, assume that it lacks the package."""
 
 ROS1_MEND = "ROS 1 needs rospy: apt-get install python3-rospy ros-core, or name the Python that has it in ros1.python"
 ROS2_MEND = (
@@ -89,9 +89,9 @@ def ros1_place(python: Path | None) -> Place:
 def ros2_place(python: Path | None, backend: str = "auto") -> Place:
     """Return the place of rclpy or DDS.
 
-    If the settings name an interpreter, that is the place. With the backend ``auto``, it runs rclpy, or DDS if it has only
-    that. Otherwise, the order is: the sourced ROS 2, a ROS 2 in /opt/ros, this environment, and the environment of ``make
-    ros``. For DDS, the order is: this environment, and the environment of ``make ros``.
+    If the settings name an interpreter, the place is this interpreter. With the backend ``auto``, it then runs rclpy, or
+    DDS if it has only DDS. Otherwise, the order is: the sourced ROS 2, a ROS 2 in /opt/ros, the agent's own environment,
+    and the environment of ``make ros``. For DDS, the order is: the agent's own environment, and that of ``make ros``.
 
     Args:
         python: The interpreter that the settings name, or None.

@@ -101,7 +101,7 @@ def connect(
 
     @module.rule(when=rs.startup.detached(), writes=node, detached=True, background=True)
     async def connect(ctx: rs.RuleContext) -> rs.Resign | None:
-        """Open the topics, services and actions of all slots. With `use_sim_time`, follow the simulation's clock."""
+        """Open the topics, services and actions of all slots. With `use_sim_time`, follow the topic ``/clock``."""
         if getattr(asyncio.get_running_loop(), "is_virtual", False):
             return rs.Resign("time is virtual: a test writes the slots, or plays a bag")
         made = ctx[node] = make_node(ctx.settings, ctx.stop)  # early, so that other rules for startup find the node

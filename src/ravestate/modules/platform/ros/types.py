@@ -107,7 +107,7 @@ class Types:
         """Return a message in its wire format.
 
         Args:
-            value: A message; a mapping of fields (missing fields are zero); or, if the type has a single field, the
+            value: A message; a mapping of fields (missing fields are zero or empty); or, if the type has a single field, the
                 value of that field.
             name: The type's full name.
 

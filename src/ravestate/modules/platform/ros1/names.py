@@ -19,7 +19,7 @@ class Settings(NodeSettings):
     master: str = ""
     """The address of the ROS master. By default ``ROS_MASTER_URI`` in the environment, or else this machine."""
     ip: str = ""
-    """This machine's address for other nodes (``ROS_IP``)."""
+    """This machine's address for other nodes. By default ``ROS_IP`` in the environment."""
 
 
 module = rs.Module("ros1", settings=Settings)

@@ -27,8 +27,8 @@ if TYPE_CHECKING:
 
 POLL = 30  # if there are no updates, the server holds a request for them for this many seconds
 MOST = 100  # the maximum number of updates in an answer
-PATIENCE = 10  # the bot waits this many seconds longer for an answer than `POLL`
-ANSWER = 20.0  # the maximum number of seconds to wait for the answer to any other request
+PATIENCE = 10  # the bot waits for updates for `POLL` seconds, and then for this many more
+ANSWER = 20.0  # the maximum number of seconds to wait for the answer to a request, except a request for updates
 CONFLICTS = 4  # after this many conflicts in a row, the bot gives up, because another program polls the same bot
 SETTLED = 60.0  # a bot that has run for this many seconds does not give up, because the other program came later
 CONFLICT_WAIT = 2.0  # the first wait after a conflict (seconds); a request from before a crash is a conflict, too
@@ -80,7 +80,7 @@ class Inlet:
         self._bot, self._me, self._room, self._carrier, self._settings = bot, me, room, carrier, settings
 
     async def listen(self, url: str, token: str) -> None:
-        """Receive the updates that the server sends to a webhook. It stays set, so that no update is lost."""
+        """Receive the updates that the server sends to a webhook. The webhook stays set at the end, so no update is lost."""
         from ravestate.modules.platform.chats.webhook import listen
 
         secret = hashlib.sha256(f"webhook {token}".encode()).hexdigest()

@@ -1,6 +1,7 @@
 """A bridge process that joins the network of ROS 2 by DDS (cyclonedds), without an installed ROS 2.
 
-It carries only topics, no services. A service would need a sample's metadata, which the library does not offer.
+It carries only topics, no services. A service would need the metadata of a sample (a message of
+DDS), which the library does not offer.
 """
 
 # pyright: basic, reportMissingImports=false
@@ -11,7 +12,7 @@ import threading
 
 from pipe import Pipe, reason, serve
 
-BASE, NAME, ARRAY = 1, 2, 3  # kinds of fields
+BASE, NAME, ARRAY = 1, 2, 3  # the numbers that rosbags gives to the kinds of fields
 
 
 class DdsNode:

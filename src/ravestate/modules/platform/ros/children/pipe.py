@@ -219,7 +219,7 @@ def reason(error):
 
 
 def every(seconds, function):
-    """Call a function in a thread every `seconds`, until the process ends."""
+    """Call a function every `seconds` seconds, in a thread, until the process ends."""
 
     def run():
         while True:

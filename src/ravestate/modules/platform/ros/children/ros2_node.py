@@ -96,7 +96,7 @@ class Ros2Node:
         self._executor.wake()
 
     def _look_at_types(self):
-        """Warn about each node with another type for a topic. ROS 2 neither connects such nodes nor reports them."""
+        """Warn about each node whose type for a topic is not this node's type. ROS 2 neither connects nor reports it."""
         for channel, binding in list(self._bindings.items()):
             name, type_ = binding["name"], binding["type"]
             if binding["kind"] == "subscriber":
@@ -247,7 +247,7 @@ class Ros2Node:
             self._executor.wake()
 
     def cancel(self, channel, number):
-        """Cancel a goal. Or forget a call, because a call without an answer would stay in memory."""
+        """Cancel a goal, or forget a call. A call without an answer would otherwise stay in memory."""
         call = self._calls.pop((channel, number), None)
         if call is not None:
             call["cancelled"] = True
