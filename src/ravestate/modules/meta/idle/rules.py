@@ -70,7 +70,7 @@ async def notice_unfinished_line(ctx: rs.RuleContext) -> rs.Resign | None:
 
 
 def _reason_for_quiet(ctx: rs.RuleContext) -> str:
-    """Return why the agent may not be bored; empty if it may."""
+    """Return why the agent may not be bored; an empty text if the agent may be bored."""
     if ctx[rs.activity]:
         return "there is something to do"
     if ctx[dismissed]:

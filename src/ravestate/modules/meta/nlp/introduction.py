@@ -49,7 +49,7 @@ class Introduction:
     name: str
     """The words in the place of a name: *Ilka*, *tired*."""
     rest: str
-    """The other words of the utterance, without polite words."""
+    """The words of the utterance outside the introduction, without polite words."""
     sure: bool = False
     """Whether the words around the name can only introduce a name: *my name is*, *call me*."""
     pointing: bool = False

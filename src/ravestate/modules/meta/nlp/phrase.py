@@ -11,7 +11,7 @@ from ravestate.language.contractions import word_set
 from .tree import Tree, Word
 
 Person = Literal["I", "you", "other"]
-"""The speaker (*I, my, we*), the agent (*you, your*), or others."""
+"""The speaker (*I, my, we*), the agent (*you, your*), or any other person or thing."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -26,7 +26,8 @@ class Phrase:
     text: str
     """The phrase as the triple has it, for example ``my sister Rosa``."""
     head: str = ""
-    """The lemma of the common noun, for example ``sister``, or the adjective or gerund itself, in lower case. Empty for names and pronouns."""
+    """The lemma of the common noun, for example ``sister``, or the adjective or gerund itself, in lower case.
+    It is empty for names and pronouns."""
     names: tuple[str, ...] = ()
     """The names in the phrase, as written. For example, *two brothers, Max and Tim* has ``("Max", "Tim")``."""
     owner: Phrase | None = None

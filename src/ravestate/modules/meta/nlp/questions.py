@@ -23,7 +23,8 @@ _REQUESTING = word_set("tell name explain describe define list remind")
 def questions_in(tree: Tree) -> list[str]:
     """Return the questions of an utterance, if it asks several; otherwise an empty list.
 
-    A request for a fact counts: *tell me the capital of France*. Statements with a question word do not: *I know when you lie*.
+    A request for a fact counts as a question: *tell me the capital of France*. A statement with a question word does
+    not: *I know when you lie*.
     """
     texts = [text for sentence in sentences_in(tree) for text in _asked_in(tree, sentence)]
     return texts[:MOST] if len(texts) > 1 else []
@@ -72,7 +73,7 @@ def _asks(word: Word) -> bool:
 
 
 def asking(tree: Tree) -> list[list[Word]]:
-    """Return the sentences with a question word or mark."""
+    """Return the sentences with a question word or a question mark."""
     return [s for s in sentences_in(tree) if any(map(_asks, s)) or s[-1].text.endswith("?")]
 
 

@@ -38,7 +38,7 @@ class Statement:
 
     Example:
         *my sister Rosa lives in Antwerp* has the triple (my sister Rosa, live, Antwerp); ``subject.head`` is ``sister``,
-        ``subject.name`` is ``Rosa``, ``subject.of("I")`` holds; ``object.preposition`` is ``in``. A skill may write::
+        ``subject.name`` is ``Rosa``, ``subject.of("I")`` is true; ``object.preposition`` is ``in``. A skill may write::
 
             for said in analysis.statements:
                 if said.holds and said.subject_person == "I" and said.verb == "live":

@@ -14,7 +14,7 @@ class Word:
     """A token in the tree. Its labels are those of spaCy's English pipelines."""
 
     index: int
-    """The word's number within the tree."""
+    """The word's index in the tree; the first word has the index 0."""
     text: str
     """The word as written."""
     lemma: str
@@ -45,7 +45,7 @@ class Tree:
     """The words of a text with their dependencies."""
 
     def __init__(self, text: str, words: Sequence[Word]) -> None:
-        """`words` are numbered from 0, in order."""
+        """Take the words of a text, in order. The index of the first word is 0."""
         self.text = text
         self.words = tuple(words)
 

@@ -52,7 +52,7 @@ def connect(path: Path, *, whole_log: bool = True) -> tuple[Any, Any]:
         whole_log: Whether a damaged log is an error. If not, the log is read up to the damage, and the rest is cut off.
 
     Raises:
-        Exception: RuntimeError if the file has lost all of its tables. For a damaged file, ladybug may raise any
+        Exception: The file has lost all of its tables (RuntimeError). For a damaged file, ladybug may raise any
             exception.
     """
     import ladybug

@@ -285,7 +285,10 @@ class EmbeddedStore:
             log.warning("memory %s: %s: %s", self._path, what, kept)
 
     def rest(self) -> None:
-        """Purge the file, unless a purge has failed since the last deletion: each pause would log the same warning."""
+        """Purge the file, but not if a purge has failed since the last deletion.
+
+        After such a failure, each pause would log the same warning again.
+        """
         if not self._has_failed:
             self.purge()
 

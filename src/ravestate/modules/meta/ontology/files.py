@@ -19,7 +19,10 @@ _SIDE_FILE = re.compile(
 
 
 class MemoryFiles:
-    """The database file at a path, and its side files. They contain personal data, so only the user may read them."""
+    """The database file at a path, and its side files, such as the log.
+
+    All these files contain personal data, so only the user may read them.
+    """
 
     def __init__(self, path: Path) -> None:
         self.path = path
@@ -40,7 +43,7 @@ class MemoryFiles:
         return [file for file in files if self._match(file) and file.is_file()]
 
     def kept(self) -> list[Path]:
-        """Return the existing files that were set aside: damaged and orphaned logs."""
+        """Return the existing files that were set aside: damaged logs, and orphaned logs (of a deleted database)."""
         return [file for file in self.present() if (match := self._match(file)) and match["kept"]]
 
     def logs(self) -> list[Path]:
@@ -117,7 +120,7 @@ class MemoryFiles:
         return [file for file in self.present() if file.unlink(missing_ok=True) is None]
 
     def remove_rewrite(self) -> None:
-        """Remove the files of an unfinished rewrite; the database itself is whole."""
+        """Remove an unfinished rewrite: a copy without deleted nodes. The database itself is whole."""
         for file in self.present():
             if (match := self._match(file)) and match["new"] and not match["kept"]:
                 file.unlink(missing_ok=True)

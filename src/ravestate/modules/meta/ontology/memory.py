@@ -84,7 +84,7 @@ class Memory:
         Raises:
             PlatformError: A package is missing; the file is in use, damaged or of a newer version; or the server refuses
                 the connection. The message says what to do. All other operations then raise the same error.
-            DeclarationError: A file of types is invalid, or contradicts another.
+            DeclarationError: A file of types is invalid, or contradicts another file.
         """
         return self._opened
 

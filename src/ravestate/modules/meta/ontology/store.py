@@ -37,7 +37,7 @@ class Store(Protocol):
         ...
 
     def labels(self, types: Sequence[str]) -> str:
-        """Return the labels that stand in a pattern for nodes of these types. Other nodes may have them, too."""
+        """Return the labels that stand in a pattern for nodes of these types. Nodes of other types may have these labels, too."""
         ...
 
     def relation(self, name: str) -> str:
@@ -60,7 +60,7 @@ class Store(Protocol):
         ...
 
     def note_bytes(self) -> None:
-        """Note, in the same transaction, that deleted nodes leave bytes behind; `rest` or `close` removes these bytes.
+        """Note, in the transaction that deletes nodes, that their bytes stay; `rest` or `close` removes these bytes.
 
         If the process ends earlier, `rest` removes the bytes after the next opening.
         """
@@ -69,7 +69,7 @@ class Store(Protocol):
     def purge(self) -> None:
         """Remove the bytes that deleted nodes have left behind, as far as this process can.
 
-        In a transaction, this follows the commit. Without such bytes, do nothing.
+        In a transaction, the bytes are removed after the commit. Without such bytes, do nothing.
         """
         ...
 
@@ -94,7 +94,7 @@ def check_format(place: str, found: object, newest: int) -> int:
     """Return the format of a memory; refuse a format newer than `newest`, the newest known format.
 
     Raises:
-        PlatformError: The format is newer, or is no number.
+        PlatformError: The format is newer than `newest`, or is no number.
     """
     if not isinstance(found, int) or found > newest:
         raise PlatformError(

@@ -24,14 +24,14 @@ COLUMNS: dict[Kind, str] = {
 
 
 def has_old_format(execute: Execute, place: str) -> bool:
-    """Return whether the database has an older format, and so must be copied before its use.
+    """Return whether the database has a format older than the newest one, and so must be copied before its use.
 
     Args:
         execute: A function that runs a statement and returns its rows.
         place: The database's path, for messages.
 
     Raises:
-        PlatformError: The database belongs to something else, or has a newer format.
+        PlatformError: The database belongs to another program, or has a format newer than the newest known one.
     """
     tables = _tables(execute)
     if META in tables:

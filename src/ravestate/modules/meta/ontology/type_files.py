@@ -39,7 +39,7 @@ def read_types(paths: Iterable[Path | Traversable]) -> Types:
     """Read files in the given order, and return the types that they declare together.
 
     Raises:
-        DeclarationError: A file is invalid or contradicts another; the message names file and line.
+        DeclarationError: A file is invalid or contradicts another file; the message names file and line.
         PlatformError: A file is missing or cannot be read.
     """
     reader = _Reader()
@@ -52,7 +52,7 @@ def types_in(paths: Iterable[Path]) -> Types:
     """Return the built-in types together with the types of files. A file is read once, and again after a change.
 
     Raises:
-        DeclarationError: A file is invalid or contradicts another.
+        DeclarationError: A file is invalid or contradicts another file.
         PlatformError: A file cannot be read.
     """
     return _read(tuple((path.expanduser(), _state_of(path.expanduser())) for path in paths))

@@ -12,7 +12,7 @@ farewell: Goodbye!           # without a language: the default language
 ```
 
 Several files make one phrase book. For the same intent and language, the phrases of a later file *replace* the phrases
-of earlier files. With ``!add``, they are added:
+of earlier files. With ``!add``, the phrases of the later file are added to them:
 
 ```yaml
 greet:
@@ -75,7 +75,7 @@ class PhraseBook:
             default_language: The language for intents without phrases in `language`.
 
         Raises:
-            DeclarationError: The braces in a phrase do not hold a name.
+            DeclarationError: The braces in a phrase do not contain a name.
         """
         self.language = _tag(language)
         self.default_language = _tag(default_language)

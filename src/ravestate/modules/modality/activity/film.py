@@ -28,7 +28,8 @@ class Film:
     def with_pose(self, pose: Pose) -> Film:
         """Return the film with one more pose.
 
-        A pose that is older than the film's last pose begins a new film. A pose of the same time is ignored.
+        A pose that is older than the film's last pose begins a new film. A pose with the same time as the
+        last pose is ignored.
         """
         if self.poses and pose.at <= self.poses[-1].at:
             return self if pose.at == self.poses[-1].at else Film((pose,))

@@ -23,7 +23,7 @@ class Activity:
     name: str
     """The spoken name, for example ``waving`` or ``playing the guitar``."""
     confidence: float
-    """0 to 1."""
+    """The probability of the name, from 0 to 1."""
     start: float
     """Seconds on the context's clock, like `end`."""
     end: float

@@ -34,7 +34,7 @@ class Pose:
 
 
 def pose_of(points: object, at: float, width: float, height: float) -> Pose:
-    """Return a pose from MediaPipe's landmarks, which are shares of the picture's size.
+    """Return a pose from MediaPipe's landmarks, whose places are shares of the picture's size.
 
     Args:
         points: 33 landmarks, each x, y, z and visibility.

@@ -2,8 +2,8 @@
 
 Each activity is a Gaussian with its own mean and standard deviation for each feature. All activities share one
 correlation of features. A movement belongs to the activity that makes it most probable. The movement is unknown if it
-is too far from that activity's mean, or if one of the starter set's *other* movements is more probable. The recogniser
-tries the movement and its mirror image.
+is too far from that activity's mean. It is also unknown if one of the starter set's *other* movements, such as standing,
+is more probable. The recogniser tries the movement and its mirror image.
 
 A new activity needs few demonstrations, because they determine only its mean. Its deviations are computed from those of
 an average activity.
@@ -54,15 +54,15 @@ class Recognition:
     name: str = ""
     """The name of the activity. It is empty if the movement is unknown, or if too little of the body is visible."""
     confidence: float = 0.0
-    """0 to 1."""
+    """The probability of the name, from 0 to 1."""
     others: tuple[tuple[str, float], ...] = ()
     """The next most likely names, with their confidence."""
     nearest: str = ""
-    """The most probable activity, even if the movement is too far from it. Empty if one of the *other* movements is more
-    probable, or if too little of the body is visible."""
+    """The most probable activity, even if the movement is too far from it. It is empty if one of the *other* movements is
+    more probable, or if too little of the body is visible."""
     distance: float = float("inf")
     """The distance from the most probable activity (mean squared deviation of the features), divided by the limit.
-    Infinite if too little of the body is visible."""
+    It is infinite if too little of the body is visible."""
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -78,7 +78,7 @@ class Starter:
     centre: NDArray[Any]
     """(features,): the values that are subtracted from features to normalise them."""
     size: NDArray[Any]
-    """(features,): the values by which features are divided after that."""
+    """(features,): the values by which features are divided after this subtraction."""
     usual: NDArray[Any]
     """(features,): the deviations of an average activity."""
     correlation: NDArray[Any]
@@ -104,7 +104,7 @@ class Starter:
 
     @classmethod
     def learn(cls, examples: Mapping[str, Sequence[NDArray[Any]]], others: Sequence[Sequence[NDArray[Any]]]) -> Starter:
-        """Return a starter set with the `limit` and the `heat` 1.0.
+        """Return a starter set whose `limit` and `heat` are both 1.0.
 
         Args:
             examples: The features of the performances of each activity, by the activity's name.
@@ -177,7 +177,7 @@ class Recogniser:
         """Learn an activity from the features of a demonstration, and the features of its mirror image.
 
         People may demonstrate with the left or the right hand. So the recogniser keeps either the demonstration or its
-        mirror image: the one that is nearer to the earlier demonstrations.
+        mirror image: the one that is nearer to the activity's earlier demonstrations.
         """
         np, group = self._np, self._taught.setdefault(name, [])
         both = [(side - self.starter.centre) / self.starter.size for side in sides]

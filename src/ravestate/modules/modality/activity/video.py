@@ -21,7 +21,7 @@ def poses_in(file: Path, python: Path | None = None, progress: Callable[[float],
     Args:
         file: The file.
         python: The interpreter of the vision worker, for a video; by default, `visionio` finds it.
-        progress: A function to call before each look, with the time in the video (seconds).
+        progress: A function to call before each picture of the video, with the picture's time (seconds).
 
     Raises:
         PlatformError: The file cannot be read, or the vision worker is missing.

@@ -20,7 +20,7 @@ MERGE = 0.45
 """Two faces whose vectors are at most this far apart surely belong to one person. If two people in memory have the same
 name, and faces this near to each other, memory merges them."""
 MARGIN = 0.05
-"""If the distances to the two most similar people differ by at most this, the agent recognises neither."""
+"""If the distances to the two most similar people differ by at most this much, the agent recognises neither person."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -112,7 +112,7 @@ def keep(graph: Graph, person: Node, vectors: Iterable[tuple[float, Vector]], mo
 
 
 def doubles(graph: Graph, person: Node, vectors: Sequence[Vector]) -> list[Node]:
-    """Return the other people in memory who have the same name and the same face."""
+    """Return the people in memory, other than `person`, who have the same name and the same face."""
     name = str(person.get("name", "")).casefold()
     found: dict[str, Node] = {}
     for face, known in stored(graph):

@@ -16,7 +16,7 @@ WAIT = 2.5
 KEPT = 8
 """The number of vectors to keep from a visit."""
 ALIKE = 0.15
-"""A second vector at most this far from the first one adds nothing new."""
+"""A vector that is at most this far from a kept vector shows nothing new."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -67,7 +67,7 @@ class Visitor:
 
         Args:
             face: Their face.
-            least: The minimum quality of a second vector.
+            least: The minimum quality of each vector after the first vector.
             threshold: The maximum distance of two vectors of the same person.
         """
         vectors = self.vectors
@@ -124,7 +124,7 @@ def best(vectors: Iterable[tuple[float, Vector]], most: int) -> tuple[tuple[floa
 def decide(history: Sequence[FaceVec], face: FaceVec, *, sure: int, quality: float) -> Decision | None:
     """Decide whose face a track follows, when its last `sure` vectors of good quality agree. Until then, return None.
 
-    After `WAIT` seconds without a vector of good quality, the face is a stranger's.
+    After `WAIT` seconds without a vector of good quality, the face counts as a stranger's.
 
     Args:
         history: The last faces, oldest first, with `face` at the end.

@@ -85,8 +85,8 @@ class Watch:
         """Wait for the next picture of the platform's camera. The worker's own cameras need no wait.
 
         Returns:
-            The picture of the platform's camera, or True for a camera of the worker. False if the platform's camera has
-            sent no picture for `gone_after` seconds. None after the last picture.
+            The picture of the platform's camera, or True for a camera of the worker. The result is False if the
+            platform's camera has sent no picture for `gone_after` seconds, and None after the last picture.
         """
         if self._frames is not None:
             self._silent = False

@@ -26,7 +26,7 @@ def wish_of(text: str) -> Literal["forget", "remember", ""]:
     if not _ABOUT.search(text):
         return ""
     said = heard(text)
-    if bundled_matcher("acts").loaded:  # otherwise, only words that equal an example count
+    if bundled_matcher("acts").loaded:  # otherwise, only sentences that equal an example count
         _wishes().load()
     found = {match.name for match in _wishes().match_all(said) if match is not None}
     return "forget" if "forget" in found else "remember" if "remember" in found else ""

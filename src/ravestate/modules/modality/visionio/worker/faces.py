@@ -22,10 +22,10 @@ MOST = 3
 WITHIN = 0.6
 """Two boxes belong to the same face if at least this share of the smaller box is inside the other one."""
 LAP = 0.2
-"""Neighbouring tiles share this part of a tile."""
+"""A thorough look also searches tiles: parts of the picture. Neighbouring tiles share this part of a tile."""
 HOG = 960
 """For dlib's detector, the longer side of a picture is scaled to this many pixels, or to twice as many for a thorough
-look. The detector finds faces of at least 80 pixels."""
+look. In the scaled picture, the detector finds faces of at least 80 pixels."""
 FACE = 110
 """To refine the box of a face, the face is scaled to this width (pixels)."""
 
@@ -174,7 +174,7 @@ def assign(boxes: list[list[float]], known: list[list[float]]) -> list[int | Non
 
 
 def is_part(one: list[float], other: list[float]) -> bool:
-    """Return whether two boxes belong to one face, even if one of them shows only a part of it."""
+    """Return whether two boxes belong to one face, even if one box shows only a part of the face."""
     shared = _shared(one, other)
     return overlap(one, other) >= SAME or shared >= WITHIN * min(one[2] * one[3], other[2] * other[3])
 

@@ -14,7 +14,7 @@ cv2.setNumThreads(1)
 LARGEST = 1280
 """A picture is scaled down if its longer side has more pixels than this. Faces of 40 pixels stay recognisable."""
 DARK = 6.0
-"""A picture counts as black if its mean brightness (0 to 255) is below this."""
+"""A picture counts as black if its mean brightness (0 to 255) is below this value."""
 
 
 class Picture:
