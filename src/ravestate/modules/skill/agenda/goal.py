@@ -21,7 +21,7 @@ from .wish import whole_words
 Words = str | Iterable[str] | Callable[[rs.RuleContext], str | Awaitable[str]]
 
 MOMENT = 1.0  # the seconds for which an opportunity to pursue a goal lasts
-LONGEST = 1000  # the expressions `done` and `refused` search at most this number of the user's characters
+LONGEST = 1000  # `done` and `refused` search at most this number of characters of the user's words
 
 
 @dataclass(frozen=True, slots=True)

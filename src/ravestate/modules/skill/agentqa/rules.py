@@ -28,10 +28,11 @@ from .telling import telling, without_question
 CERTAIN = 0.7
 """The least confidence at which the agent accepts the topic of a question without further evidence."""
 STATED = 0.85
-"""The same for a statement. This threshold is higher, because a statement may resemble a question: *I don't know what
-to say*."""
+"""The least confidence at which the agent accepts the topic of a statement. It is higher than `CERTAIN`, because a
+statement may resemble a question: *I don't know what to say*."""
 STRAY = 0.9
-"""The same for a question that does not mention the agent, and asks for advice: *what if I forget my lines*."""
+"""The least confidence at which the agent accepts the topic of a question for advice. This threshold is for questions
+that do not mention the agent: *what if I forget my lines*."""
 _OWN = frozenset(("what_if", "how_to", "should", "say_what", "recommend", "worth", "predict"))
 """Kinds of questions (asks.yaml) about the user's own life."""
 _YOU = frozenset(("you", "your", "yours", "yourself"))

@@ -22,7 +22,8 @@ Step = Literal[
 WAITING = frozenset({"offered", "choosing", "guessed", "asked", "unseen", "blind", "between", "riddle"})
 """The steps in which the agent waits for the user."""
 GUESSES = 2
-"""The maximum number of guesses of each player."""
+"""The maximum number of guesses of each player. If the agent has seen nothing this many times in a row, it offers a
+riddle."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -41,7 +42,7 @@ class Game:
     ranked: tuple[str, ...] = ()
     """The agent's guesses in this round, best first."""
     guess: int = 0
-    """The number of earlier guesses in this round, by the player who guesses."""
+    """The number of guesses before the present guess in this round, by the player who guesses. A hint counts as a guess."""
     doubts: int = 0
     """The number of unclear answers to this guess."""
     blank: int = 0

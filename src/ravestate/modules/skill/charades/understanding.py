@@ -27,7 +27,8 @@ ANY_GAME = word_set("game round")
 SURE = 2
 """The strength of a sure yes or no; *I think so* is weaker."""
 SURE_NAME = 0.65
-"""The minimum confidence that the user means a known activity. Below it, the recogniser could learn a wrong movement."""
+"""The minimum confidence that the user means a known activity. With a lower minimum, the recogniser could learn a wrong
+movement."""
 FRAMES = ("{}", "it was {}", "I was {}", "is it {}", "are you {}", "you are {}", "no it was {}")
 """Sentences in which the user names an activity."""
 
@@ -39,7 +40,7 @@ class Move:
     kind: str
     """``yes``, ``no``, ``unclear``, ``ready``, ``named``, ``stop``..."""
     name: str = ""
-    """The activity that the user names; empty for none."""
+    """The activity that the user names; empty if the user names none."""
 
 
 def understand(seen: Analysis, moves: Set[str], known: Iterable[str] = ()) -> Move | None:
@@ -73,7 +74,7 @@ def _answer(seen: Analysis, *, weak: bool) -> str:
 
     Args:
         seen: The analysis of the utterance.
-        weak: Whether a weak answer, such as *I think so*, is unclear.
+        weak: Whether a weak answer, such as *I think so*, counts as unclear.
     """
     answer = seen.yesno
     if not answer:
@@ -108,7 +109,7 @@ def _names_a_game(seen: Analysis) -> bool:
 
 
 def name_of(seen: Analysis, known: Iterable[str] = ()) -> str:
-    """Return the activity that an utterance names; empty for none.
+    """Return the activity that an utterance names; empty if it names none.
 
     If the agent knows a name with this meaning, return that name. Otherwise, return the user's own words: from the verb
     in *-ing* on, or else the words after *it was*.

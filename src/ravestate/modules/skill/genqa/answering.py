@@ -25,20 +25,22 @@ from .stems import Stems
 RETRIEVED = 20
 """The maximum number of passages in each of two searches: for any word of the question, and for all its words."""
 READ = (1, 1, 2, 4, 8, 8)
-"""The sizes of the batches in which passages are read until one is good enough. Only a follow-up uses the last two."""
+"""The sizes of the batches in which passages are read until one is good enough. Only a follow-up uses the last two
+sizes."""
 GOOD, VERY_GOOD, HOPELESS = 7.5, 9.0, -4.0
 """Best scores that end the reading: `VERY_GOOD` after the first passage, and `GOOD` after later passages. A best score
 of `HOPELESS` or less ends the reading after four passages, except for a follow-up."""
 ENOUGH = 0.4
 """The minimum share (0 to 1) of the question's words in a passage. Passages with fewer words are not read."""
 SHORT = 24
-"""The search adds at most this many passages of each document that the thread is about, whatever their words are."""
+"""The search adds at most this many passages of each document that the thread (the latest questions) is about. The words
+of these passages do not matter."""
 LEVEL = 0.8
 """Two scores count as equal if they differ by less than this."""
 COMMON = 20_000
 """The search skips a word that is in more passages than this, unless all words of the question are so common."""
 NAMES, KINDS = 0.4, 0.7
-"""If a follow-up has only names, these numbers replace the share of its words in a passage: `KINDS` if the passage has a
+"""If a follow-up has only names, these values replace the share of its words in a passage: `KINDS` if the passage has a
 word of `Question.kinds`, `NAMES` if not."""
 WORDS = 24
 """The maximum number of words to search for."""
@@ -53,7 +55,7 @@ class Candidate:
     text: str
     title: str
     row: int
-    """The number of the passage in the index."""
+    """The passage's row in the index."""
     score: float
     """The reader's score, up to 11; most passages above 0 are good answers."""
     covered: float
@@ -118,7 +120,7 @@ class Answerer:
         Args:
             path: The file of the index; a missing file is created.
             collection: Whether the index should contain the collection that comes with Ravestate.
-            reranker: The folder of another reader; see `Reranker`.
+            reranker: The folder of a reader to use instead of the bundled reader; see `Reranker`.
         """
         self._path = path
         self._collection = collection
@@ -265,7 +267,7 @@ class Answerer:
         if question.follows:
             return sorted(read, key=lambda candidate: -_chance(question, candidate))
         read.sort(key=lambda candidate: -candidate.score)
-        # Among equals, take the passage with the fewest other words: "life expectancy", not "life expectancy of women".
+        # Among equals, take the passage with the fewest words besides the question's: not "life expectancy of women".
         level = [c for c in read if c.score > read[0].score - LEVEL and c.covered >= read[0].covered]
         asked = {form for word in question.words for form in variants_of(word.lower())}
         first = min(level, key=lambda one: (not _is_plain(question, one.text), _besides(one.text, asked)))

@@ -14,7 +14,7 @@ from .index import Index, IndexedFile
 from .reading import Unreadable, kind_of, read
 
 Reading = Callable[[Path, int], object]
-"""A callback for each document. Its arguments are the file, and the number of earlier documents in the file."""
+"""A callback for each document. Its arguments are the file, and the number of documents before it in the file."""
 
 Kind = Literal["added", "replaced", "unchanged", "removed", "unreadable"]
 

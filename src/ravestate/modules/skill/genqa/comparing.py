@@ -145,7 +145,7 @@ def _asked(name: str, base: str, noun: str, ask: Callable[[str], Answer]) -> Ans
 
 
 def begun(name: str, ask: Callable[[str], Answer]) -> Answer | None:
-    """Return the answer with the date when `name` was born, founded or built; None if no passage about it has one."""
+    """Return the answer with the date when `name` was born, founded or built; None if no passage has it."""
     answers = [ask(f"when was {name} {done}?") for done in ("born", "founded", "built")]
     bare = name.lower().removeprefix("the ")
     starts = (bare, "she ", "he ", "it ")

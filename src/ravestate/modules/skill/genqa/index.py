@@ -214,7 +214,7 @@ class Index:
         return row - first
 
     def touch(self, file: IndexedFile) -> None:
-        """Save the new size and date of a file whose content has not changed."""
+        """Save the new size and the new time of change of a file whose content is the same as before."""
         with self._changing():
             self._base.execute(
                 "UPDATE files SET size = ?, modified = ? WHERE path = ?",

@@ -27,7 +27,8 @@ class Settings(rs.Settings):
     sure: Probability = 0.7
     """The minimum confidence of an answer that the agent states as certain."""
     unsure: Probability = 0.5
-    """The minimum confidence of an answer that the agent states as uncertain. Below this, the module is silent."""
+    """The minimum confidence of an answer that the agent states as uncertain. If the confidence is lower, the module is
+    silent."""
     wording: Literal["sentence", "model"] = "sentence"
     """``sentence``: the document's own words; ``model``: the words of wildtalk's language model. The prompt has only the
     sentences that were found, and an answer with any other name or number is not used."""
@@ -36,7 +37,8 @@ class Settings(rs.Settings):
     bundled cross-encoder."""
 
     rates: Mapping[str, float] = Field(default_factory=dict[str, float])
-    """Currency (``dollar``, ``euro``, ``sterling``...) → its value; only currencies with a value are converted."""
+    """Currency (``dollar``, ``euro``, ``sterling``...) → its value; all values are in the same currency. Only currencies with a
+    value are converted."""
 
     @model_validator(mode="after")
     def _in_order(self) -> Settings:

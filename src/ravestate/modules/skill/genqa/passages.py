@@ -57,7 +57,7 @@ def _sentences(paragraph: str) -> Iterator[str]:
 
 
 def _fitting(paragraph: str, start: int, end: int) -> Iterator[str]:
-    """Yield the sentence from `start` to `end` in short parts; nothing if it has no letter."""
+    """Yield the sentence from `start` to `end` in short parts. Yield nothing if the sentence has no letter."""
     while end - start > LONGEST + SHORTEST:  # a cut must leave a rest that is long enough
         window = paragraph[start : start + LONGEST]
         cut = max(window.rfind(mark, LONGEST // 3) for mark in ("; ", ": ", ", ")) + 1

@@ -52,7 +52,7 @@ class Question:
     needs: tuple[tuple[str, ...], ...] = ()
     """The qualifiers of the question: a passage must have a word of each tuple."""
     avoids: tuple[str, ...] = ()
-    """Words that a passage must not have: other ranks, the other sex."""
+    """Words that a passage must not have, such as ranks that the question does not name."""
     kind: QuestionWord | None = None
     doubtful: bool = False
     """Whether only a sure answer counts, because the utterance might not be a question about the world."""

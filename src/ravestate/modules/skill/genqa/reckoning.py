@@ -61,7 +61,7 @@ class Quantity:
     """The unit as the text has it."""
 
     def beside(self, other: Quantity) -> tuple[float, float] | None:
-        """Return the values of both quantities in this unit; None if they measure different things."""
+        """Return the values of both quantities in the unit of this quantity; None if they measure different things."""
         if self.unit == other.unit:
             return self.value, other.value
         if not _alike(self.unit, other.unit):
@@ -155,7 +155,7 @@ def measured(text: str, after: Sequence[str] = ()) -> list[Quantity]:
 
     Args:
         text: The text.
-        after: Earlier texts; their numbers come after those of `text`.
+        after: Texts from before `text`; their numbers come after those of `text`.
     """
     found: list[Quantity] = []
     spoken = re.sub(r"\bdegrees? (?=[cf])", "", _in_digits(text))

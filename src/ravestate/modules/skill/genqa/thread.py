@@ -64,9 +64,9 @@ class Turn:
     at: float
     """The time of the question, in seconds since the context began."""
     asked: tuple[Thing, ...] = ()
-    """The things in the question, most likely first."""
+    """The things in the question. The thing that a pronoun most likely means comes first."""
     told: tuple[Thing, ...] = ()
-    """The things that only the answer names, not the question; most likely first."""
+    """The things that only the answer names, not the question. The thing that a pronoun most likely means comes first."""
     items: tuple[str, ...] = ()
     """The members of a list in the answer."""
     sexes: tuple[tuple[str, str], ...] = ()
@@ -253,7 +253,7 @@ def correction(seen: Parse) -> list[Word]:
 
 
 class _Follow:
-    """An utterance that follows others in a thread."""
+    """An utterance that follows the questions of a thread."""
 
     def __init__(self, seen: Parse, thread: Sequence[Turn], titled: Callable[[str], str]) -> None:
         self.seen, self.tree, self.thread = seen, seen.tree, thread

@@ -16,8 +16,8 @@ from ravestate.modules.meta.verbaliser.intents import Intent
 from .names import goodbye, greeted, hello, module, parted
 
 JUST_NOW = 60.0
-"""The number of seconds for which a greeting or a goodbye of the agent counts. Meanwhile, it says no second hello to a
-user who greets, and no second goodbye to a user who leaves."""
+"""The number of seconds for which a greeting or a goodbye of the agent counts. Meanwhile, the agent says no second
+hello to a user who greets, and no second goodbye to a user who leaves."""
 GENERAL = 0.15
 """The weight of the answers. It is so low that almost any other rule that can answer outranks them."""
 

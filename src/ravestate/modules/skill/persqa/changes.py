@@ -24,7 +24,7 @@ _FIXED = re.compile(
 """Words with which a user corrects the spelling or the sound of a value."""
 _PARTLY = re.compile(r"(?:n['’]t|\bnot) (?:just|only|merely|simply)\b", re.IGNORECASE)
 ALIKE = 0.6
-"""The least share of common letters of two values of which one was mistaken for the other: *Lora*, *Nora*."""
+"""The least share of letters that two values have in common if one was mistaken for the other: *Lora*, *Nora*."""
 
 
 def is_partial(reader: Reader, said: nlp.Statement) -> bool:

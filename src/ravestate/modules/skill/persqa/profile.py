@@ -26,7 +26,7 @@ def learn(facts: Facts, told: Iterable[Fact]) -> News:
     """Return the user's facts, without the name, after they have told the facts `told`.
 
     Args:
-        facts: The facts before.
+        facts: The facts that were known before.
         told: The new facts.
 
     Example:

@@ -38,7 +38,7 @@ _UNUSUAL = re.compile(r"[^\w\s.,;:!?'’\"-]")
 """Characters that no word of English has. The tagger was not trained on them."""
 _PARTLY = re.compile(r"(?:n['’]t|\bnot) (?:just|only|merely|simply)\b|\bbecause\b", re.IGNORECASE)
 _JOINED = re.compile(r"[^.!?]*\band\b[^.!?]*", re.IGNORECASE)
-"""If these words stand between two values, an unsure second value does not correct the first: *and*, within a sentence."""
+"""If *and* stands between two values in one sentence, an unsure second value does not correct the first value."""
 _SPEAKING = frozenset(("speak", "talk", "call", "be"))
 _NAMING = frozenset(("call", "name", "christen", "baptise", "dub", "say", "use", "prefer", "be"))
 """Verbs with which users say their own name: *Ada speaking*, *just say Kim*."""
@@ -54,7 +54,7 @@ class Reader:
         seen: The analysis of the utterance.
         asked: The topic of the agent's open question, or an empty string.
         person: The topic of the relative whom *he* or *his* means, or an empty string.
-        known: The earlier facts.
+        known: The facts that were known before the utterance.
     """
 
     def __init__(self, seen: nlp.Analysis, asked: str = "", person: str = "", known: Facts | None = None) -> None:
@@ -215,7 +215,7 @@ class Reader:
         return False
 
     def _is_hearsay(self, tag: Tag) -> bool:
-        """Return whether others say a value of the user: *people say I am from Spain*."""
+        """Return whether other people say a value about the user: *people say I am from Spain*."""
         if tag.label == NAME or not any(
             one.verb in _REPORTING for one in self.seen.statements if one.subject.person != "I"
         ):

@@ -248,7 +248,7 @@ def item_of(user: Acquaintance) -> str | None:
 
 
 def node_id(item: object) -> str | None:
-    """Return the id of the node in an item of `interloc.users`; None if it has none."""
+    """Return the id of the node in an item of `interloc.users`; None if the item has no node."""
     return item.node.id if isinstance(item, interloc.Recognised) else None
 
 

@@ -81,7 +81,7 @@ class Talk:
     warned: bool = False
     """Whether the agent has told the user about the trouble."""
     quiet: bool = False
-    """Whether the user has said goodbye."""
+    """Whether the user has said goodbye or left, and has said nothing since."""
     parted: bool = False
     """Whether the user has said goodbye at any time. Another name then belongs to another person."""
     doubt: str = ""

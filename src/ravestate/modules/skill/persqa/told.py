@@ -216,7 +216,7 @@ def recalled(reader: Reader, told: Iterable[Told], known: Facts) -> list[Told]:
 
 
 def _latest(told: Iterable[Told]) -> list[Told]:
-    """Return the statements in order. The last of several with the same text counts."""
+    """Return the statements in order. If several statements have the same text, keep the last one."""
     found: dict[str, Told] = {}
     for one in filter(lambda one: one.text, told):
         found.pop(one.text, None)

@@ -29,7 +29,8 @@ EVERYTHING = "everything"
 SURELY = 0.7
 """If an utterance has several sentences: the minimum confidence that one of them says who the user is."""
 BRIEF = 4
-"""The maximum number of words of a mere yes, and of an utterance after which the agent may ask about something else."""
+"""The maximum number of words of a mere yes. It is also the maximum number of words of an utterance after which the agent
+may ask about something else."""
 
 Kind = Literal[
     "nothing",  # nothing that concerns persqa
@@ -42,7 +43,7 @@ Kind = Literal[
     "mentioned",  # the user mentioned a relative without a name
     "asked",  # the user asked about themselves
     "asked_told",  # the user asked about something that they said earlier, and that no topic covers
-    "asked_words",  # as before, but perhaps the user's own words hold the answer
+    "asked_words",  # like `asked_told`, but perhaps the user's own words have the answer
     "vouched",  # the user answered the question that tests who they are, or refused to
     "identified",  # the user said "it's me", perhaps with a name
     "mistaken",  # the user is not the person that the agent takes them for

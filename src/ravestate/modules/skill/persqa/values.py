@@ -15,7 +15,7 @@ from .topics import Topic
 from .wording import tidy
 
 LONGEST = {"name": 4, "people": 4, "place": 5}
-"""Kind → the maximum number of words of a value; 7 for other kinds."""
+"""Kind → the maximum number of words of a value; 7 words for all other kinds."""
 _LEADS = {
     **dict.fromkeys(("subject", "activity", "thing"), r"an? (?=\S)"),
     "work": r"(?:an?|the) (?=\S)",

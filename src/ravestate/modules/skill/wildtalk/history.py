@@ -49,8 +49,8 @@ class History:
 
         Args:
             turns: The maximum number of turns, including the turn to be answered; at least 1.
-            characters: The maximum number of characters (about 4 make a token). Beyond it, the oldest utterances are
-                left out. If the newest utterance alone is too long, it is cut.
+            characters: The maximum number of characters (about 4 make a token). If there are more, the oldest utterances
+                are left out. If the newest utterance alone is too long, it is cut.
         """
         if turns < 1 or characters < 1:
             raise ValueError(f"turns and characters must be at least 1, not {turns} and {characters}")

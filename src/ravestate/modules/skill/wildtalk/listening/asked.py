@@ -27,10 +27,10 @@ from .roles import turned
 from .state import State
 
 ANSWER, EXACTLY = -10.3, -8.6
-"""The minimum scores (logits) of answers: of advice, which suits many questions, and of answers that must be exact. An
-answer to another question from the same area of life scores -10 to -11."""
+"""The minimum score (a logit) of advice, which suits many questions, and the minimum score of an answer that must be
+exact. An answer to a different question from the same area of life scores -10 to -11."""
 SURE, ORDERED, UNASKED = 0.4, 0.6, 0.8
-"""The minimum confidence in the kind of a question, of an order, and of any other utterance."""
+"""The minimum confidence in the kind of a question, in the kind of an order, and in the kind of any other utterance."""
 ALIKE: Mapping[str, tuple[str, ...]] = {
     "choose": ("recommend",),
     "would_you": ("would_you", "favourite"),

@@ -30,9 +30,9 @@ _AMAZED = re.compile(r"\b(?:can|could|would) you (?:imagine|believe)\b(?: (?:tha
 ORDERS = frozenset(("tell_me", "ask_me", "write", "pick", "recommend", "how_to", "say_word"))
 """Kinds of requests (asks.yaml). After another sentence, such a request is the point of the utterance."""
 FELT = 0.8
-"""The minimum confidence in a feeling that takes precedence over such a request."""
+"""The minimum confidence in a feeling that takes precedence over a request of the kinds `ORDERS`."""
 ORDERED = 0.8
-"""The minimum confidence in such a request."""
+"""The minimum confidence in a request of the kinds `ORDERS`."""
 
 
 def asking_sentence(seen: Analysis) -> str:

@@ -18,7 +18,7 @@ LONGEST = 6
 CHAINED = 2
 """The maximum number of words in the user's turn of word chain: *a tiger*."""
 CHAINING = 6
-"""The maximum number of words in such a turn with a verb such as *say*: *then I say tiger*."""
+"""The maximum number of words in a turn of word chain that has a verb such as *say*: *then I say tiger*."""
 
 RULES = re.compile(
     r"\brules?\b|\bhow (?:do|does|did|is|to|can|should|am) (?:it|that|this|i|we|one|the game|play)\b.*(?:work|go|play|do|win|\bit\b)"
@@ -158,7 +158,7 @@ class Turn:
     def _riddle(self, game: Game) -> Played | None:
         riddle = self._riddle_of(game)
         answer, over, seen, lemmas = riddle["answers"][0], Game("riddle"), self._seen, self._lemmas()
-        if right := [one for one in riddle["answers"] if one in lemmas]:  # a riddle may have several
+        if right := [one for one in riddle["answers"] if one in lemmas]:  # a riddle may have several answers
             return self._say("riddle", "right", over, answer=right[0])
         if self._unsure or self._no or lemmas & {"give", "tell", "know"}:
             return self._say("riddle", "tell", over, answer=answer, Answer=answer.capitalize())
@@ -228,7 +228,8 @@ class Turn:
         return self._chance.choice(self._shows[kind][group]).format(**roles), state
 
     def _tell(self, wish: Wish, listed: Sequence[str]) -> Played:
-        """Tell a joke or story about the subject that the user wants. If there is none, say so, and tell another."""
+        """Tell a joke or story about the subject that the user wants. If there is none, say so, and tell one
+        about something else."""
         fit = fitting(self._shows, wish, listed)
         text, state = self._new(wish.kind, fit or listed)
         return (self._without(wish) if wish.thing and not fit else "") + text, state

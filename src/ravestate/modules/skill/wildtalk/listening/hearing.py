@@ -33,9 +33,9 @@ from .turns import is_cry, is_leaving, is_news
 BARE = 3
 """The maximum number of words of a question that only repeats words in surprise: *that late?*"""
 SETTLED = 0.5
-"""The minimum confidence in the likeliest move at which no second move counts."""
+"""From this confidence in the likeliest move on, the second likeliest move does not count."""
 PARTING = 0.5
-"""The minimum probability of a farewell as the reply to an utterance that is a farewell itself."""
+"""If a farewell suits as the reply with at least this probability, the utterance counts as a farewell itself."""
 GRIEVING = ("console", "mourn")
 """Moves in reply to a sorrow."""
 MEANT = 0.7

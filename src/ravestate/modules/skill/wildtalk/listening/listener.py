@@ -34,7 +34,8 @@ SHOWS = ("joke", "song", "story", "play")
 PLAINLY = 6
 """The maximum number of words of a request that names a performance, before the classifier is loaded."""
 BRIEF, BRIEFLY = 12, 12
-"""The maximum length of a sign of listening such as *mhm*, in characters; the number of answers until it may return."""
+"""The maximum length of a sign of listening such as *mhm*, in characters, and the number of answers after which such a
+sign may return."""
 STANCES = ("like", "curious", "cool")
 THIRD = 0.4
 """The rank that a reply loses if it is the third question in a row."""
@@ -187,7 +188,10 @@ class Listener:
     # ---------------------------------------------------------------------------------- phrases
 
     def _mended(self, heard: Heard, state: State, chance: random.Random) -> Answer | None:
-        """Return the answer to a correction: an admission, then an answer to what the user meant. None if there is none."""
+        """Return the answer to a correction: an admission, then an answer to what the user meant.
+
+        Return None if there is no such answer.
+        """
         repair = None if heard.seen is None else repair_in(heard.seen, state)
         if repair is None:
             return None
@@ -292,7 +296,7 @@ def _said_lately(template: str, text: str, state: State) -> bool:
 
 
 def _with_fewer_questions(sources: Iterator[_Source], state: State) -> Iterator[_Source]:
-    """Yield the sources without questions during a game, or if the user wants none. Questions come last then."""
+    """Yield the sources. During a game, or if the user wants no questions, yield their questions after everything else."""
     later: list[_Source] = []
     for source in sources:
         if not state.asks or state.game is not None:

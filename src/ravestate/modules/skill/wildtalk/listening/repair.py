@@ -17,7 +17,7 @@ from .state import State
 
 LONGEST = 9
 """If a sentence such as *I meant the bread* has no other sign of a repair, it may have at most this many words. A sentence
-that rejects or questions the answer may have three more."""
+that rejects or questions the answer may have three more words."""
 _LEAD = re.compile(r"^(?:(?:no|nope|wait|oh|but|well|huh|um|uh|eh|hey|sorry|hm+|and|ok|okay|again) )+")
 _MEANT = re.compile(
     r"^i (?:(?P<firm>meant|was (?:asking|talking|speaking)(?: you)?|am (?:asking|talking)|asked(?: you)? (?=about|for|if|whether))"

@@ -48,13 +48,13 @@ class Game:
     """A game in progress."""
 
     kind: str
-    """``riddle``, ``chain``, ``animal``, ``knock`` or ``play``."""
+    """``riddle``, ``chain``, ``animal``, ``holder``, ``knock`` or ``play``; see `Wish`."""
     word: str = ""
-    """The riddle's question, the last word of the chain, or the last question about the animal."""
+    """The riddle's question, the last word of the chain, the last question about the user's animal, or the agent's animal."""
     used: tuple[str, ...] = ()
     turn: int = 0
     asides: int = 0
-    """The number of the last answers that did not belong to the game."""
+    """The number of the latest answers in a row that did not belong to the game."""
 
     def beside(self, answer: str) -> Game | None:
         """Return the game after an answer that does not belong to it; None if the game ends.

@@ -24,9 +24,9 @@ FELT: Mapping[str, str] = {
 }
 """The name of a feeling → its tone."""
 SURE, GLAD = 0.65, 0.8
-"""The minimum confidence in a sad feeling, and in any other feeling."""
+"""The minimum confidence in a sad feeling, and the minimum confidence in any other feeling."""
 LASTS, GRIEF = 5, 12
-"""The number of turns for which the tone of a feeling lasts; the same for grief in grave words."""
+"""The number of turns for which the tone of a feeling lasts, and the number of turns for grief in grave words."""
 DOUBT = 0.4
 """From this confidence in a dark tone on, a glad feeling does not count."""
 

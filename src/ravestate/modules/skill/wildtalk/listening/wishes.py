@@ -15,7 +15,8 @@ from ravestate.modules.meta.nlp.tree import Tree, Word
 from .state import State
 
 LONGEST = 20
-"""The maximum number of words of an utterance that accepts an offered performance; *another one* may have half as many."""
+"""The maximum number of words of an utterance that accepts an offered performance. An utterance that asks for *another
+one* may have half as many words."""
 MOST = 400
 """The maximum number of characters that are read: the patterns take time that grows with the square of the length."""
 LATELY = 3
@@ -24,7 +25,7 @@ UNNAMED = 0.6
 """The minimum confidence in a request that does not name its performance: *hit me with a good one*."""
 
 _SHARES = {"joke": ("knock",), "play": ("riddle", "chain", "animal")}
-"""An act, and the further performances for which it asks."""
+"""An act → the further performances for which it may ask."""
 _HOLDER = re.compile(r"\b(?:think of|pick|choose) (?:an|some|any) animal\b")
 """The user asks the agent to think of an animal, which the user will guess."""
 _GUESSER = re.compile(r"\b(?:i|i'll|i will) (?:think of|pick|choose|have) (?:an|some|any) animal\b")
