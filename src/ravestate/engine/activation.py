@@ -82,7 +82,7 @@ WAITING: Final = 2
 RUNNING: Final = 3
 ENDED: Final = 5
 NAMES: Final = tuple(state.name.lower() for state in State)
-"""The names of the states, in lower case, by the number of the state."""
+"""The names of the states, in lower case, by the integer of the state."""
 COMPLETE: Final = 0
 LOSE: Final = 1
 REFUSE: Final = 2
@@ -103,7 +103,8 @@ class Activation:
         missing: The needs of the clause that no spike meets yet, as bits.
         ripens: The time (seconds) at which all its spikes will be old enough; `NEVER` unless a spike is too young.
         newest: The number of the newest spike that the activation held when it joined the queue of ``free.py``.
-        place: Its place in the queue of ``free.py``; None if the activation is not in the queue, or is in its `batch`.
+        place: Its place in the queue of ``free.py``; None if the activation is not in the queue, or is in the
+            queue's `batch`.
         patience_ends: Key: a group in which other activations wait for this one; value: the time at which this
             activation's patience ends in that group (seconds; L16).
         refusal: The reasons for which it waits; None unless it waits.
@@ -259,7 +260,7 @@ class Refusal:
         sure: An entry for each rival whose readiness depends only on work in progress: the activations that do this
             work.
         taken: Whether a run has taken one of the activation's slots.
-        in_doubt: Whether a rival may never be ready, so that only the end of its patience ends the wait.
+        in_doubt: Whether a rival may never be ready. If so, only the end of the rival's patience ends the wait.
         hopes: Key: a hope of the activation; value: the hope's count (`Horizon.hopes`).
         interests: The groups whose changes may lift the refusal.
         leader: The activation that this one follows (``leaders.py``), or None.

@@ -28,11 +28,12 @@ from ravestate.engine.state import State
 from ravestate.engine.stuck import Stuck
 
 BATCH: Final = 100
-"""How many activations `start_free` starts at most. Then the caller reports the events of the runs."""
+"""The maximum number of activations that one call of `start_free` starts. Then the caller reports the events of their
+runs."""
 
 Turn = tuple[int, float, int, int, Activation]
-"""A place in the queue of activations that ask: the number of the activation's oldest causal group, its sort key
-(`State.order`), and the activation itself."""
+"""A place in the queue of activations that ask: the number of the activation's oldest causal group, the
+activation's sort key (`State.order`), and the activation itself."""
 
 
 class Agenda:
@@ -171,8 +172,8 @@ class Agenda:
         queue.join(turns)
 
     def _may_ask(self, activation: Activation) -> bool:
-        """Return whether an activation may ask: it is ready or waits, its guards are true, and it is not deferred
-        (L23)."""
+        """Return whether an activation may ask: it is ready or waits, its guards are true, and it is not deferred as
+        a turn of a loop (L23)."""
         if activation.state not in (READY, WAITING):
             return False
         if activation.clause.guards and not self._pass_guards(activation):
@@ -181,8 +182,11 @@ class Agenda:
         return not (loops.runs > MANY and activation.state == READY and loops.defer(activation))
 
     def _ask(self, activation: Activation) -> bool:
-        """Ask for consent; return whether the activation has it. If not, it waits, and its benches (``benches.py``) get
-        new heads."""
+        """Ask for consent; return whether the activation has it. If not, the activation waits.
+
+        A *bench* has spikes that share a second spike; only its *head* is an activation (``benches.py``). If the
+        refused activation is the head of a bench, the bench gets a new head.
+        """
         refusal = self.consent.ask(activation)
         if refusal.names:
             self.consent.holdings.waits.begin(activation, refusal)
@@ -258,7 +262,10 @@ def _is_taken(activation: Activation) -> bool:
 
 
 def _presses(activations: Iterable[Activation]) -> bool:
-    """Return whether one of the activations hears no built-in flag, and so counts for ``core:pressure``."""
+    """Return whether one of the activations counts for ``core:pressure``.
+
+    An activation does not count if its clause hears a built-in flag, or has a predicate on one (`Clause.reflexive`).
+    """
     for activation in activations:
         if not activation.clause.reflexive:
             return True

@@ -1,14 +1,16 @@
 """Benches: spikes that wait together for a second spike, their *counterpart*.
 
 A clause with two constraints, its *needs*, takes a pair of spikes. The spike that arrives first is the *first spike*.
-It waits in a *half*: a table of such first spikes, without activations (``halves.py``). Suppose that a hundred first spikes wait when a counterpart arrives. The
-counterpart completes a hundred pairs. Only one pair runs, and the first spikes of the other pairs take the next
-counterpart (L12). So only the oldest pair gets an activation, the *head* of the bench. The other first spikes stay on
-the bench, and the whole bench takes the next counterpart.
+It waits in a *half*: a table of such first spikes, without activations (``halves.py``).
 
-A clause has benches only if no better clause competes with it (`Half.sole`). Its activations wait for no rival, so a
-group refuses them only while a slot is taken there. If a group refuses the head, the engine creates a new head for the
-next first spike. The new head asks in the same round of consent.
+Suppose that a hundred first spikes wait when a counterpart arrives. The counterpart completes a hundred pairs. Only one
+pair runs, and the first spikes of the other pairs take the next counterpart (L12). So only the oldest pair gets an
+activation, the *head* of the bench. The other first spikes stay on the bench, and the whole bench takes the next
+counterpart.
+
+A clause has benches only if no better clause competes with it (`Half.sole`). The clause's activations wait for no
+rival, so a group refuses them only while one of their slots is taken there. If a group refuses the head, the
+engine creates a new head for the next first spike. The new head asks in the same round of consent.
 
 So the pairs ask in the order of their first spikes, the oldest first. In consent, older causal groups go first. The two
 orders agree: a first spike comes from outside or from a detached rule, and so begins a group. Before a group merges,
@@ -47,7 +49,7 @@ class Benches:
         self._place(self.state.pools.pop(half), partner)
 
     def check(self, partner: Spike) -> None:
-        """Look again at each bench of a counterpart.
+        """Look again at each bench whose counterpart is `partner`.
 
         If a bench can no longer use this counterpart, give the bench another one. Otherwise, create the bench's head,
         unless another activation runs with the counterpart, or will ask before the head.

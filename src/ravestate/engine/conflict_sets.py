@@ -1,12 +1,14 @@
 """Conflict sets: clauses that the same spike makes ready, although only one of them can run.
 
 A thousand rules that hear the same signal and write the same slot would need a thousand activations. One would run, and
-the rest would lose the spike. So only the best clause gets an activation; the other clauses form the activation's queue
-of alternatives. If the activation's run resigns or fails, the next clause gets an activation. If there is a tracer, or
-when a rule retires or is added, the queue *unfolds* into ordinary activations. It also unfolds if a rival's utility may
-lie between those of the clauses (`Consent.is_contested`). The number of each activation is fixed from the start, and no
-signal that an alternative raises can help a rival (`find_conflict_sets`). So it does not matter when a queue unfolds.
-An explanation unfolds nothing.
+the rest would lose the spike. So only the best clause (with the greatest utility x weight) gets an activation. The
+other clauses form the activation's queue of alternatives. If the activation's run resigns or fails, the next clause
+gets an activation.
+
+If there is a tracer, or when a rule retires or is added, the queue *unfolds* into ordinary activations. It also unfolds
+if a rival's utility may lie between those of the clauses (`Consent.is_contested`). The number of each activation is
+fixed from the start, and no signal that an alternative raises can help a rival (`find_conflict_sets`). So it does not
+matter when a queue unfolds. An explanation unfolds nothing.
 """
 
 from __future__ import annotations

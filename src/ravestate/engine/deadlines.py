@@ -3,8 +3,8 @@
 `Deadlines` knows which entries are stale. ``parts.py`` has a table, `DUE`, of handlers for entries that are due.
 
 A *clause* is one alternative of a rule's condition. A *need* is one constraint of a clause: it asks for one spike. A
-*half* keeps a first spike, without an activation, until a second spike comes (``halves.py``). A detached need looks at a
-spike without consuming it.
+*half* keeps a first spike, without an activation, until a second spike comes (``halves.py``). A detached need looks at
+a spike without consuming it.
 """
 
 from __future__ import annotations
@@ -40,7 +40,8 @@ class Kind(enum.IntEnum):
 RIPEN, LOOK, RECHECK, PATIENCE, EXPIRE, FORGET, TIMEOUT, WATCH = Kind
 
 Entry = tuple[float, Kind, int, Any]
-"""A time (seconds), a kind, the entry's number, and its owner."""
+"""A deadline: its time (seconds), its kind, how many deadlines were added up to it, and the owner: the object that it
+concerns."""
 
 
 class Deadlines:

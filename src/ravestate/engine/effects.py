@@ -19,7 +19,8 @@ class Run:
         run: The number of the run, which every event of the run carries. Runs are numbered in the order of their start.
         rule: The rule whose function to call.
         payloads: Key: the qualified name of a signal whose spike the run holds; value: the spike's payload.
-        values: Key: the qualified name of a slot that the run may read; value: its value when the run starts (law L13).
+        values: Key: the qualified name of a slot that the run may read; value: the slot's value when the run
+            starts (law L13).
         origin: The object that came from outside with the event that led to the run; None if there was no object.
     """
 
@@ -62,7 +63,7 @@ class Failed:
 
 @dataclass(slots=True, init=False)
 class Spiked:
-    """A report of a new spike of a watched signal."""
+    """A report of a new spike of a signal that the runtime watches (`Engine.watched`)."""
 
     signal: str
     payload: Any

@@ -118,7 +118,7 @@ class Engine:
         return parts
 
     def parts_at(self, now: float) -> Parts:
-        """Let time pass until `now` (seconds), and return the parts. An event given to these reaches no journal."""
+        """Let time pass until `now` (seconds), and return the parts. An event given to the parts reaches no journal."""
         parts = self._parts or self.parts
         if now != parts.state.now:
             parts.pass_time(now)
@@ -181,7 +181,7 @@ class Engine:
         return 0 if self._parts is None else self._parts.state.loops.late
 
     def read(self, slot: int) -> Any:
-        """Return the value of the slot with this number."""
+        """Return the value of the slot with this index."""
         return self._latest.read(slot)
 
     @property

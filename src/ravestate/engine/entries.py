@@ -139,7 +139,7 @@ class Entries:
         return True
 
     def let_expire(self, spike: Spike, due: float) -> None:
-        """Set the time (seconds) at which holders that are still incomplete give the spike up (L14)."""
+        """Set the time (seconds) at which incomplete holders (activations and halves) give the spike up (L14)."""
         if due <= self.state.now or due not in spike.expiring:
             spike.expiring = (*spike.expiring, due)
             self.state.deadlines.add(due, EXPIRE, spike)

@@ -43,7 +43,7 @@ class ActivationState:
         state: ``gathering``, ``ripening``, ``gated``, ``ready``, ``waiting``, ``running`` or ``cancelling``.
         holds: The signal and the age (seconds) of each spike that the activation holds.
         lacks: The signals of the spikes that it lacks.
-        waits_for: The rules that it waits for, and by how many nats each is ahead. The number is 0 for a taken slot, a
+        waits_for: The rules that it waits for, and by how many nats each is ahead. This lead is 0 for a taken slot, a
             tie, or utilities of 0.
         until: The time (seconds) by which the activation runs, times out or gives a spike up; None without a limit.
     """
@@ -175,7 +175,7 @@ def _activation(state: State, activation: Activation) -> ActivationState:
 
 
 def activations(state: State) -> dict[int, list[ActivationState]]:
-    """Return the live activations by rule (its number), oldest first."""
+    """Return the live activations by the index of their rule, oldest first."""
     found = {rule: [*active] for rule, active in state.active.items()}
     for rule, others in stand_ins(state).items():
         found.setdefault(rule, []).extend(others)
@@ -183,7 +183,7 @@ def activations(state: State) -> dict[int, list[ActivationState]]:
 
 
 def stand_ins(state: State) -> dict[int, list[Activation]]:
-    """Return, by rule, the activations that the engine has not made yet.
+    """Return, by the index of their rule, the activations that the engine has not made yet.
 
     Entries of halves (``halves.py``) and alternatives (``conflict_sets.py``) stand for these activations. No table of
     the engine has them, because an explanation changes nothing.
@@ -252,7 +252,7 @@ def words_of(record: Record, others: str = "", behind: str = "") -> str:
 
 
 def why_given_up(lost: GaveUp, behind: str = "") -> str:
-    """Return why a spike was given up, with the rule that answered it, if known: ``behind → rule answered it``."""
+    """Return why a spike was given up. If a known rule answered the spike, name it: ``behind → rule answered it``."""
     if lost.reason != LossReason.CONSUMED or not lost.by:
         return LossReason.say(lost.reason)
     return f"{f'{behind} → ' if behind else ''}{lost.by} answered it"
@@ -280,7 +280,7 @@ def join(names: Iterable[str]) -> str:
 
 
 def _missing(state: State, rule: RulePlan, records: Sequence[Record]) -> Iterator[str]:
-    """Yield a sentence for each signal of a rule that has not occurred: the rules that may raise it, and their ends."""
+    """Yield a sentence for each signal of a rule that has not occurred: its possible causes, and how they ended."""
     if not records:
         return
     occurred = {record.signal for record in records if isinstance(record, Born)}

@@ -48,16 +48,16 @@ class Group:
 
     Attributes:
         id: The group's number. Groups are numbered in the order in which they begin.
-        taken: Key: the number of a slot that is taken in the group; value: the runs that hold the slot, or None if a
+        taken: Key: the index of a slot that is taken in the group; value: the runs that hold the slot, or None if a
             run has finished with it.
         entries: The group's spikes that a half holds (``halves.py``), and the counterparts of benches (``benches.py``).
             Halves whose rules write no slot are left out, unless they have `Half.kin`.
         interested: The waiting activations that ask for consent again when something changes in the group
             (`State.dirty`).
-        patience_ends: The rivals under pressure that have no activation yet (L16). Key: the number of the rival's
+        patience_ends: The rivals under pressure that have no activation yet (L16). Key: the index of the rival's
             clause; value: the time (seconds) at which the rival's patience ends, possibly in the past.
         roster: The members of a large group by slot and by rule (``roster.py``); None until a lookup needs it.
-        answers: Key: the number of a slot; value: the rule that first finished with the slot, and the number of that
+        answers: Key: the index of a slot; value: the rule that first finished with the slot, and the number of that
             rule's activation. The engine fills this table only while there is a tracer.
     """
 
@@ -110,21 +110,21 @@ class Group:
     def writers(self, slots: tuple[int, ...], causes: Causes) -> Iterable[Activation]:
         """Return the members that may write one of the slots, in the order in which they joined.
 
-        A small group has no roster. The result is then all members.
+        A small group has no roster (an index of its members). The result is then all members.
         """
         return self.members if self.count <= FEW else self._roster(causes).writers(slots)
 
     def causers(self, slots: tuple[int, ...], causes: Causes) -> Iterable[RulePlan]:
         """Return those of the members' rules that may trigger a writer of one of the slots.
 
-        A small group has no roster. The result is then the rules of all members.
+        A small group has no roster (an index of its members). The result is then the rules of all members.
         """
         if self.count <= FEW:
             return dict.fromkeys([member.clause.rule for member in self.members])
         return self._roster(causes).causers(slots)
 
     def by_rule(self, causes: Causes) -> Mapping[int, Mapping[Activation, None]]:
-        """Return the members by the numbers of their rules."""
+        """Return the members by the indices of their rules."""
         if self.count > FEW:
             return self._roster(causes).rules
         found: dict[int, dict[Activation, None]] = {}

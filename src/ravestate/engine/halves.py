@@ -38,7 +38,7 @@ from ravestate.policy.model import Clause, Half, Need, SignalPlan
 from ravestate.policy.policy import Policy
 
 MANY: Final = 8
-"""If a search passes more than this many spikes that do not fit, the half gets an index, a `Row`."""
+"""If a search meets more than this many spikes that do not fit, the half gets an index, a `Row`."""
 
 
 class Halves:
@@ -129,7 +129,7 @@ class Halves:
                 self._share(clause, [one for one in activations if one.state < RUNNING])
 
     def _share(self, clause: Clause, activations: list[Activation]) -> None:
-        """Create the left-out activations of a clause; `activations` has all that do not run yet."""
+        """Create the left-out activations of a clause; `activations` has all its activations that do not run yet."""
         state, holdings = self.state, self.holdings
         own: dict[Spike, Activation] = {}  # spike → the activation that began with it
         held: set[Spike] = set()
@@ -254,7 +254,7 @@ class Halves:
         return found
 
     def _inherit_pressure(self, spike: Spike, half: Half, group: Group) -> None:
-        """If the stand-by of a clause was under pressure, create its activation, and put the activation under
+        """If a clause's stand-by was under pressure, create an activation of the clause, and put the activation under
         pressure."""
         for number in group.patience_ends or ():
             clause = self.state.policy.clause_plans[number]

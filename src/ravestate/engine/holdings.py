@@ -61,7 +61,8 @@ class Holdings:
     def put_under_pressure(self, activation: Activation, group: Group, until: float) -> None:
         """Give a new activation a patience that ends in a group at `until` (seconds; L16).
 
-        The stand-by or the entry (``halves.py``) that the activation replaces was already under pressure there.
+        The activation replaces a stand-by, or an entry (a spike in a half, ``halves.py``), which was already under
+        pressure there.
         """
         activation.patience_ends = {group: until}
         if until > self.state.now:
@@ -174,7 +175,7 @@ class Holdings:
     def complete(self, activation: Activation, *, late: bool = False) -> None:
         """Make an activation ready and queue it, to ask for consent or, if it needs no consent, to start.
 
-        An activation that must wait as a turn of a loop (L23) is queued only by a second call, with `late`.
+        If the activation is a deferred turn of a loop (L23), only a second call, with `late`, queues it.
         """
         state = self.state
         if not late:
@@ -263,8 +264,8 @@ class Holdings:
         """Return the other incomplete activations of the clause with the same spikes and the same patience.
 
         Each further spike is offered to all of these activations, but only one of them can consume the spikes. While
-        this one waits or runs, a second one may still be a rival of other activations (L16). More than two have no
-        use: if the clause never got its last spike, each new spike would add another activation (L23).
+        that one waits or runs, another of them may still be a rival of activations outside this set (L16). More than
+        two have no use: if the clause never got its last spike, each new spike would add another activation (L23).
         """
         if not activation.clause.firm_bits:
             return []  # nothing is consumed, so all may run
@@ -293,7 +294,7 @@ class Holdings:
     def give_up(self, run: Activation, reason: str) -> None:
         """Make all other activations of a run's rule give up the run's non-detached spikes for good."""
         rule = run.clause.rule
-        for spike in run.stands_on:  # refuse all first, because an activation that loses one spike takes another
+        for spike in run.stands_on:  # refuse all spikes first: an activation that loses one spike takes another
             self.benches.unbench(spike)
             self.entries.refuse_for_good(spike, rule)
         for spike in run.stands_on:

@@ -51,12 +51,12 @@ SURE: Final = 2
 
 SlotNumbers = frozenset[int]
 Place = tuple[int, Group, SlotNumbers]
-"""The goal of a derivation: a signal (its number), the group that may cause it, and slots that no helper may write."""
+"""The goal of a derivation: a signal (its index), the group that may cause it, and slots that no helper may write."""
 
 FINAL: Final = 1 << 60
 STALE: Final = -1
-"""Special values for the last item of an entry of `Horizon._known`, which is otherwise a depth. `FINAL` marks a final
-strength. `STALE` marks a strength that the engine must derive again."""
+"""Special values for the last item of an entry of `Horizon._known`. `FINAL` marks a final strength. `STALE` marks a
+strength that the engine must derive again. Any other value is a depth: how many older derivations were in progress."""
 
 Step = Generator[Any, int, int]
 """A step of a derivation: it yields further steps, receives the strength of each, and returns its own strength."""
@@ -76,9 +76,9 @@ class Horizon:
         roots: The live activations on which the latest derivation with the result `SURE` rests.
         visited: The groups on whose state the results depend.
         hopes: The changes after which the results may differ. A key is a kind of change (`RULE`, `OUTSIDE` or `SEEN`,
-            see ``activation.py``) and the number of a rule or signal. The value is a count. For `OUTSIDE`, the count is
-            a limit. If one activation of a rule changes, and the rule has more than this many others, the results stay
-            the same. For other kinds, the count is 0.
+            see ``activation.py``) and the index of a rule or signal. The value is a count. For `OUTSIDE`, the count is
+            a limit. If one activation of a rule changes, and the rule has more than this many other activations, the
+            results stay the same. For other kinds, the count is 0.
         recheck: The time (seconds) at which the first of the spikes on which the results rest becomes too old.
     """
 
@@ -311,7 +311,7 @@ class Horizon:
             return best
 
     def _close(self, first: int, since: int) -> None:
-        """Mark the strengths of the open places as final or stale (`since`), from the index `first` on."""
+        """Mark strengths of open places as `since` says: final or stale. Begin with the place at `first` in `_open`."""
         for place in self._open[first:]:
             self._known[place] = self._known[place][0], (), since
         del self._open[first:]
@@ -344,7 +344,7 @@ class Horizon:
         return best
 
     def _rules(self, group: Group) -> Mapping[int, Mapping[Activation, None]]:
-        """Return the members of a group by rule (its number), and record that the results depend on the group."""
+        """Return the members of a group by the index of their rule, and record that the results depend on the group."""
         found = self._by_rule.get(group)
         if found is None:
             self.visited[group] = None
@@ -403,8 +403,8 @@ class Horizon:
 def _solve(step: Step) -> int:
     """Run a derivation with all its steps, and return its strength.
 
-    If a step needs the strength of another step, it yields that step to this loop, as `_comes` and `_caused` do. A ``yield from``
-    only divides one step into several functions.
+    If a step needs the strength of another step, it yields that step to this loop, as `_comes` and `_caused` do. A
+    ``yield from`` only divides one step into several functions.
     """
     waiting: list[Step] = []
     strength: Any = None

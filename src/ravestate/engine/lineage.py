@@ -25,7 +25,7 @@ class Loop:
 
 
 class Lineage(NamedTuple):
-    """The numbers of the rules that led to a spike or run within an instant, and the `Loop` to which it belongs."""
+    """The indices of the rules that led to a spike or run within an instant, and the `Loop` of the spike or run."""
 
     rules: frozenset[int]
     loop: Loop

@@ -29,7 +29,8 @@ MANY: Final = 500
 """After this many runs in one instant, the engine notes which rules led to a spike. Most instants have fewer runs."""
 
 TURNS: Final = 500
-"""After this many turns in one instant, the engine defers turns. `MANY` and `TURNS` add up to the 1,000 runs of L23."""
+"""After this many turns in one instant, the engine defers further turns. `MANY` and `TURNS` add up to the 1,000 runs of
+L23."""
 
 
 class Loops:

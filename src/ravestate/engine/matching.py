@@ -87,7 +87,8 @@ class Matching:
         """Offer the spikes of a merged group again, oldest first.
 
         Some needs of a clause may only hold spikes of one group (L12). Before the merge, this limit kept some of these
-        spikes apart. As at its birth, a spike is offered only to activations that are older than itself, oldest first.
+        spikes apart. As at its birth, a spike is offered only to activations that are older than the spike, oldest
+        first.
         """
         state, holdings = self.state, self.holdings
         offers: list[tuple[int, int, int, Activation, Spike]] = []

@@ -49,14 +49,14 @@ class Memory:
         self.report_ends = report_ends
         self.now = 0.0
         self.values: dict[int, Any] = {}
-        """Number of a slot that was written or read → its value."""
+        """Index of a slot that was written or read → its value."""
         self.unseen: dict[int, dict[str, Any]] = NOTHING
-        """Key: the number of a collection that was not read since its last change; value: its items, which a
+        """Key: the index of a collection that was not read since its last change; value: its items, which a
         write may change without a copy."""
         self.ran: dict[int, float] = NOTHING
-        """Number of a rule with a cooldown → the end of its last run that fired (seconds)."""
+        """Index of a rule with a cooldown → the end of its last run that fired (seconds)."""
         self.retired = NO_NUMBERS
-        """The numbers of the rules that have retired."""
+        """The indices of the rules that have retired."""
         self.dropped: dict[str, int] = NOTHING
         """Name of a signal → how many of its spikes were dropped because of its limit (L23)."""
         self.watched: dict[str, int] = {}
@@ -64,7 +64,7 @@ class Memory:
         self.blamed = NO_NUMBERS
         """The `id` of each predicate whose exception was reported."""
         self.looped = NO_NUMBERS
-        """The numbers of the rules that an error has named for an endless loop."""
+        """The indices of the rules that an error has named for an endless loop."""
         self.activations = 0
         """The number of the newest activation."""
         self.runs = 0
@@ -94,7 +94,7 @@ class Memory:
         self.groups = other.groups
 
     def read(self, slot: int) -> Any:
-        """Return the value of the slot with this number."""
+        """Return the value of the slot with this index."""
         if self.unseen:
             self.unseen.pop(slot, None)
         try:

@@ -24,7 +24,7 @@ class Roster(Generic[Member]):
     """The members of a causal group. The class keeps the activations themselves, but looks only at the rule of each.
 
     Attributes:
-        rules: Number of a rule → its activations in the group, in the order in which they joined.
+        rules: Index of a rule → its activations in the group, in the order in which they joined.
     """
 
     __slots__ = ("_causers", "_causes", "_count", "_places", "_writers", "rules")

@@ -15,7 +15,8 @@ if TYPE_CHECKING:
     from ravestate.engine.state import State
 
 SPARE = 32
-"""If a row has more than twice its half's spikes, plus this number, the row drops the spikes that the half gave up."""
+"""The maximum size of a row is twice the number of spikes that its half holds, plus this number. A larger row drops the
+spikes that the half gave up."""
 
 
 class Row:

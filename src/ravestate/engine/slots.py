@@ -110,7 +110,7 @@ class Slots:
             self._regate(slot)
 
     def _replace(self, slot: SlotPlan, value: Any, run: Activation | None, origin: Any) -> None:
-        """Replace all items of a collection; each item that differs counts as a write of its own."""
+        """Replace all items of a collection; each item that differs from its present value is a separate write."""
         if not isinstance(value, Mapping):
             raise RuleError(f"{slot.name} is a collection: write a mapping of keys to items, not {value!r}")
         _mark_write(slot, run)

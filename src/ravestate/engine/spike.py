@@ -18,7 +18,7 @@ class Spike:
     """An occurrence of a signal: payload, time of birth (seconds), parents, causal group, and holders.
 
     Attributes:
-        rule: The number of the rule that raised the spike; -1 if code outside the rules or a detached rule raised it.
+        rule: The index of the rule that raised the spike; -1 if code outside the rules or a detached rule raised it.
         before: The number of the youngest activation that is older than the spike.
         origin: The object that came from outside with the event that led to the spike, also through detached rules;
             None if there was no object.
@@ -28,9 +28,9 @@ class Spike:
         expiring: The times at which incomplete holders give the spike up because of its age (seconds).
         in_halves: How many halves hold the spike (``halves.py``). A half keeps first spikes for clauses that have no
             activation yet.
-        parted: The numbers of the clauses for which these halves do not hold the spike. Such a clause gave it up, or
+        parted: The indices of the clauses for which these halves do not hold the spike. Such a clause gave it up, or
             has an activation that holds it.
-        refused: The numbers of the rules that gave the spike up for good.
+        refused: The indices of the rules that gave the spike up for good.
     """
 
     __slots__ = (

@@ -81,6 +81,6 @@ def _sure(activation: Activation) -> list[tuple[Activation, ...]]:
 
 
 def _hangs(activation: Activation) -> bool:
-    """Return whether only the progress of other activations can end an activation's wait: it might never end."""
+    """Return whether only the progress of other activations can end an activation's wait: the wait might never end."""
     refusal = activation.refusal
     return refusal is not None and bool(refusal.sure) and not refusal.bounded

@@ -113,9 +113,9 @@ class State(Memory):
         self.deadlines = Deadlines(self)
         # Most engines need only some of these tables. A table that begins as `NOTHING` is made at its first entry.
         self.live: dict[int, dict[Spike, None]] = {}
-        """Number of a signal → its live spikes, oldest first."""
+        """Index of a signal → its live spikes, oldest first."""
         self.active: dict[int, dict[Activation, None]] = {}
-        """Number of a rule → its activations that hold a spike or run."""
+        """Index of a rule → its activations that hold a spike or run."""
         self.lacking: dict[Need, dict[Activation, None]] = {}
         """Need → the activations that hold a spike, but lack one for this need."""
         self.halves: dict[Half, OrderedDict[Spike, int]] = NOTHING

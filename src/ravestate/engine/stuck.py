@@ -8,7 +8,7 @@ from ravestate.engine.activation import Activation
 
 
 class Stuck:
-    """A set of activations in a fixed order; `counts` has the number of members of each rule, by the rule's number."""
+    """A set of activations in a fixed order; `counts` has the number of members of each rule, by the rule's index."""
 
     __slots__ = ("_members", "counts")
 

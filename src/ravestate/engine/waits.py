@@ -52,7 +52,7 @@ class Waits:
                 self.tell_followers()
 
     def tell_followers(self) -> None:
-        """Record which rules the followers (``leaders.py``) wait for, after a change of their leaders' waits."""
+        """Record in the trace which rules followers (``leaders.py``) wait for, when their leaders' waits changed."""
         for other in self.state.waiting:
             if other.refusal is not None and other.refusal.leader is not None:
                 self._tell(other, other.refusal)

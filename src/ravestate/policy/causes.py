@@ -142,7 +142,7 @@ class Causes:
         return found
 
     def ancestors(self, signal: int) -> frozenset[int]:
-        """Return the numbers of the rules from which a chain of effects leads to the signal.
+        """Return the indices of the rules from which a chain of effects leads to the signal.
 
         Chains through detached rules or constraints do not count.
         """
@@ -152,7 +152,7 @@ class Causes:
         return self._ancestors[component]
 
     def wide_ancestors(self, signal: int) -> frozenset[int]:
-        """Return the numbers of the rules from which a chain of effects, detached or not, leads to the signal.
+        """Return the indices of the rules from which a chain of effects, detached or not, leads to the signal.
 
         A chain does not pass through an input, because an input may occur at any time anyway.
         """

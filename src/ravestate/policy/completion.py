@@ -26,7 +26,7 @@ class Completion:
     """The alternatives and the information of every signal.
 
     Attributes:
-        place: Number of a signal → its place.
+        place: Index of a signal → its place.
         alternatives: Place → the signal's alternatives, each a tuple of places.
         bare: Place → whether a pathway may hold the signal without its causes, by the empty alternative.
         information: Place → the self-information of the signal (L9), in units (`UNIT`).
@@ -91,7 +91,7 @@ def _alternatives(signal: SignalPlan, causes: Causes) -> dict[frozenset[int], No
 def _counts(signals: Sequence[SignalPlan], rules: Sequence[RulePlan], causes: Causes) -> list[int]:
     """Return, for each signal, the number of rules that have the signal on a pathway."""
     of, members = causes.components.of, causes.components.members
-    completed = [0] * len(members)  # component → the rules with a pathway through it, as a set of their numbers
+    completed = [0] * len(members)  # component → the rules with a pathway through it, as a set of their indices
     looked_at = [0] * len(signals)
     for rule in rules:
         bit = 1 << rule.index

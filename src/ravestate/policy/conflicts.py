@@ -49,7 +49,7 @@ def find_conflicts(policy: Plans) -> tuple[Conflict, ...]:
 
 
 def writers(policy: Plans) -> dict[int, list[RulePlan]]:
-    """Return a map from each slot's number to the rules that write the slot."""
+    """Return a map from each slot's index to the rules that write the slot."""
     found: dict[int, list[RulePlan]] = {}
     for rule in policy.rule_plans:
         for slot in rule.slots:
@@ -78,8 +78,10 @@ class Conflicts:
         return found
 
     def best(self, first: RulePlan, second: RulePlan) -> tuple[Clause, Clause] | None:
-        """Return each rule's best clause among those that share a root with the other rule; None if the rules do not
-        conflict."""
+        """Return each rule's best clause among those that share a root with the other rule.
+
+        If the rules do not conflict, return None instead of the pair.
+        """
         if first.slotset.isdisjoint(second.slotset):
             return None
         common = self._of_rule(first) & self._of_rule(second)

@@ -79,7 +79,10 @@ class Least:
                 self._whole[place], self._price[place] = whole, price
 
     def _settle(self, members: list[int]) -> None:
-        """Find the least pathways of signals that lead to each other. The pathways of their other causes are known."""
+        """Find the least pathways of signals that lead to each other.
+
+        The pathways of all other causes of these signals are known.
+        """
         graph = self.completion
         choices = [place for place in members if len(graph.alternatives[place]) > 1]
         causes = {cause for place in members for found in graph.alternatives[place] for cause in found}

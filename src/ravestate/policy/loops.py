@@ -89,7 +89,7 @@ def _wanted(clause: Clause) -> list[Need]:
 
 
 def _raised(policy: Plans, rule: RulePlan) -> list[int]:
-    """Return the indexes of the signals that a rule may raise, and that may immediately start the next rule of a loop.
+    """Return the indices of the signals that a rule may raise, and that may immediately start the next rule of a loop.
 
     The signals of flags are left out: writing the present value of a flag raises no signal.
     """

@@ -1,6 +1,6 @@
 """The records of a policy: the numbered form of what a designer declares.
 
-The compiler gives each signal, slot, rule and clause a number, in declaration order, and fills in the records. Nothing
+The compiler gives each signal, slot, rule and clause an index, in declaration order, and fills in the records. Nothing
 changes the records afterwards, so any number of engines share them. A signal's record lists its listeners: the needs
 (constraints of clauses) that hear it. So the cost of a spike depends only on the rules that hear its signal.
 
@@ -41,7 +41,7 @@ class SignalPlan:
     index: int
     signal: Signal[Any]
     slot: int | None
-    """The number of the slot that owns the signal; None if no slot does."""
+    """The index of the slot that owns the signal; None if no slot does."""
     input: bool
     """Whether the signal is an input (L8)."""
     name: str = field(init=False)
@@ -71,7 +71,7 @@ class SignalPlan:
 
 @dataclass(slots=True, eq=False, repr=False)
 class SlotPlan:
-    """A slot, its number and its signals."""
+    """A slot, its index and its signals."""
 
     index: int
     slot: Slot[Any]
@@ -167,7 +167,8 @@ class Clause:
 
 @dataclass(slots=True, eq=False, repr=False)
 class RulePlan:
-    """A rule with its index and settings, and the indices of the slots and signals that it names. Times are in seconds."""
+    """A rule with its index and arguments, and the indices of the slots and signals that it names. Times are in
+    seconds."""
 
     index: int
     rule: Rule[Any, Any]
@@ -181,16 +182,16 @@ class RulePlan:
     patience: float | None = None
     timeout: float | None = None
     slots: tuple[int, ...] = ()
-    """The numbers of the slots that the rule writes."""
+    """The indices of the slots that the rule writes."""
     slotset: frozenset[int] = frozenset()
     readable: frozenset[int] = frozenset()
-    """The numbers of the slots that the rule reads or writes."""
+    """The indices of the slots that the rule reads or writes."""
     views: tuple[SlotPlan, ...] = ()
     """The records of the slots in `readable`."""
     emits: frozenset[int] = frozenset()
-    """The numbers of the signals that the rule declares in ``emits``."""
+    """The indices of the signals that the rule declares in ``emits``."""
     raises: tuple[int, ...] = ()
-    """The numbers of the signals that the rule emits, and of the signals of the slots that it writes (L7)."""
+    """The indices of the signals that the rule emits, and of the signals of the slots that it writes (L7)."""
     clauses: tuple[Clause, ...] = ()
     until: tuple[Clause, ...] = ()
 
@@ -218,13 +219,12 @@ class Half:
         patience: The patience of the rules in seconds; None if they have the context's patience (L16).
         kin: Whether both spikes of a clause must belong to one causal group (L12).
         max_age: The age (seconds) at which the needs give a spike up.
-        slotset: The numbers of the slots that each of the rules writes.
+        slotset: The indices of the slots that each of the rules writes.
         busy: Whether a held spike counts for ``core:activity``.
-        places: Number of a rule → the place of its need in `needs`.
+        places: Index of a rule → the place of its need in `needs`.
         sole: Whether first spikes wait in *benches* (``engine/benches.py``), whose oldest pair alone gets an
-            activation. Such a half has a single need. The signals of its
-            clause come only from outside or from detached rules, and no better clause writes its slots for the same
-            cause.
+            activation. Such a half has a single need. The signals of the need's clause come only from outside or from
+            detached rules. No better clause writes the slots of this clause for the same cause.
     """
 
     needs: tuple[Need, ...]

@@ -1,4 +1,4 @@
-"""The numbers in rules: the checks of their range, and the values of settings that rules use as numbers."""
+"""The numeric arguments of rules, such as weight and cooldown: their values, and checks of their range."""
 
 from __future__ import annotations
 
@@ -14,9 +14,9 @@ from ravestate.errors import nearest
 
 
 class Numbers:
-    """Checks the numbers in rules, and replaces settings with their values.
+    """Checks the numeric arguments of rules, and replaces settings with their values.
 
-    It adds a fault to `faults` for each number out of range, and for each missing setting. `refers` is true if a rule
+    It adds a fault to `faults` for each argument out of range, and for each missing setting. `refers` is true if a rule
     refers to a setting.
     """
 

@@ -34,7 +34,7 @@ class Plans:
         faults: Faults that the caller found.
 
     Raises:
-        DeclarationErrors: There are faults. The exception holds the caller's and those found here.
+        DeclarationErrors: There are faults. The exception holds the caller's faults and the faults found here.
     """
 
     def __init__(

@@ -1,4 +1,4 @@
-"""The numbering of rules: their slots, their signals and their clauses."""
+"""The records of rules: each rule with an index, its slots, its signals and its clauses."""
 
 from __future__ import annotations
 

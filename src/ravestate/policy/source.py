@@ -1,5 +1,5 @@
-"""Mistakes in the source of a rule's function: undeclared acts, names that do not exist, a forgotten ``await``, a slot that
-the function replaces.
+"""Mistakes in the source of a rule's function: undeclared acts, names that do not exist, a forgotten ``await``, a slot
+that the function replaces.
 
 An act is a read, a write, an emit or the use of a payload. This file checks an act only if the function's globals or
 closure hold the slot or signal. All other acts are checked when the rule runs (law L3), e.g. an act on a name that the
@@ -48,7 +48,7 @@ class Acts:
     replaced: dict[str, int] = field(default_factory=dict[str, int])
     """Attribute that holds a slot, and that the function assigns → the line of the assignment."""
     unknown: dict[str, int] = field(default_factory=dict[str, int])
-    """Phrase about a missing name, with the nearest existing name → the line of the missing name."""
+    """Phrase about a missing name, with the most similar existing name → the line of the missing name."""
 
 
 def acts_of(rule: RulePlan, source: Source) -> Acts:
