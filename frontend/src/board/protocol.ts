@@ -413,7 +413,7 @@ export interface ActivationState {
   holds: [string, number][];
   /** The signals of the spikes that it lacks. */
   lacks: string[];
-  /** The rules that it waits for, and by how many nats each is ahead. The number is 0 for a taken slot, a tie, or utilities of 0. */
+  /** The rules that it waits for, and by how many nats each is ahead. This lead is 0 for a taken slot, a tie, or utilities of 0. */
   waits_for: [string, number][];
   /** The time (seconds) by which the activation runs, times out or gives a spike up; None without a limit. */
   until: number | null;
