@@ -48,7 +48,7 @@ def topological(after: Sequence[Sequence[int]]) -> list[int]:
 
 
 def _peel(count: int, edges: Sequence[tuple[int, int, int]]) -> list[int]:
-    """Return each vertex's number in an order in which few edges point backwards, and most of these are weak."""
+    """Return each vertex's position in an order in which few edges point backwards. Most of those edges are weak."""
     after: list[list[tuple[int, int]]] = [[] for _ in range(count)]
     before: list[list[tuple[int, int]]] = [[] for _ in range(count)]
     out = [0] * count

@@ -26,7 +26,7 @@ _TOUCHING = 4 * STRONG  # the cost of overlapping stubs, far above the cost of a
 class Tracks:
     """The number of tracks, and the track of each segment; None for a segment without a turn.
 
-    Such a segment is straight. Rarely, it is slanted, because no order of the nets keeps their stubs apart.
+    Such a segment is horizontal. Rarely, it is slanted instead, because no order of the nets keeps their stubs apart.
     """
 
     count: int

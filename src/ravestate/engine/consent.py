@@ -9,9 +9,9 @@ If only an input or a rule of another group can make a rival ready, the rival is
 to become ready, its *patience*. When the patience ends, the activation stops waiting for the rival. A rival gets its
 patience once in each group (L16).
 
-A clause without an activation may be a rival, too. A *half* (``halves.py``) may hold a spike for such a clause;
-`_judge_half` judges these rivals. Or the rival is the clause's *stand-by*, which holds no spike. With a tracer, halves
-hold no spikes, and `_judge_rival` judges all rivals.
+A clause without an activation may be a rival, too. A *half* (``halves.py``) keeps first spikes of pairs, without
+activations, for such clauses. `_judge_half` judges these rivals. Or the rival is the clause's *stand-by*, which holds
+no spike. With a tracer, halves hold no spikes, and `_judge_rival` judges all rivals.
 """
 
 from __future__ import annotations
@@ -177,10 +177,12 @@ class Consent:
             horizon.judge(rival, None, group)[0] != NO  # the clause's stand-by is a rival as well
             or horizon.open_bits(rival, group)  # activations in other groups may take a spike of this group
             or (strength == SURE and rival.rule.index in self.state.active)  # an older activation may cover the rival
-            or (strength != NO and self._is_held_beside(half, spike))  # an activation may cover another clause
+            or (strength != NO and self._is_held_beside(half, spike))  # an older activation may cover the new one
             or (strength not in (NO, SURE) and not rival.needs[1 - best.index].signal.input)  # the prospects may differ
         ):
-            self.halves.unfold(spike, half)  # the horizon stays valid: no derivation rests on the new activations
+            self.halves.unfold(
+                spike, half
+            )  # the horizon stays valid: nothing that it has found depends on the new activations
         elif strength == SURE:
             _note_sure(refusal, roots)
             refusal.name(rival)
@@ -338,7 +340,7 @@ class Consent:
         return Horizon(self.state, inert, stuck)
 
     def _rival_halves(self, clause: Clause, group: Group) -> list[tuple[Half, Spike]]:
-        """Return the halves whose rules write a slot of `clause`, each with each spike of the group that it holds."""
+        """Return pairs of a half whose rules write a slot of `clause`, and a spike of the group that the half holds."""
         slots = clause.rule.slotset
         found: list[tuple[Half, Spike]] = []
         for spike in group.entries:

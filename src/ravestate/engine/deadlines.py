@@ -29,7 +29,9 @@ class Kind(enum.IntEnum):
     RIPEN = 0  # all spikes of an activation are old enough
     LOOK = 1  # a spike is old enough for a detached need
     RECHECK = 2  # a reason to wait may end at this time (`Refusal.recheck`)
-    PATIENCE = 3  # an activation's patience ends: others wait for it, as it lacks an input or another group's spike
+    PATIENCE = (
+        3  # the patience ends of an activation that others wait for (it lacks an input, or an effect of another group)
+    )
     EXPIRE = 4  # a spike is too old for an incomplete activation, or for a half
     FORGET = 5  # a spike is too old for every detached need
     TIMEOUT = 6  # a run times out

@@ -2,8 +2,8 @@
 
 A clause with two constraints, its *needs*, takes two spikes. A half keeps the first spike, without an activation, until
 the second spike comes. One half does this for all clauses that the engine can treat alike (``halves.py``). An *entry*
-is a spike that a half keeps. A *bench* is a list of entries that share their second spike, the *counterpart*
-(``benches.py``).
+is a spike that a half keeps. A *bench* is a table of entries that wait for the same second spike, the *counterpart*,
+or have it (``benches.py``).
 """
 
 from __future__ import annotations
@@ -139,7 +139,7 @@ class Entries:
         return True
 
     def let_expire(self, spike: Spike, due: float) -> None:
-        """Set the time (seconds) at which incomplete holders (activations and halves) give the spike up (L14)."""
+        """Add a time (seconds) at which incomplete holders (activations and halves) give the spike up (L14)."""
         if due <= self.state.now or due not in spike.expiring:
             spike.expiring = (*spike.expiring, due)
             self.state.deadlines.add(due, EXPIRE, spike)

@@ -30,7 +30,7 @@ def stalemate(consent: Consent, refused: Iterable[Activation], known: Stuck | No
             if one in seen or not _hangs(one):
                 continue
             if any([waiting.isdisjoint(roots) for roots in _sure(one)]):
-                continue  # the activations that decide on one rival do not wait, so this wait will end
+                continue  # no activation that makes one rival ready, or rules it out, waits itself: so this wait will end
             seen.add(one)
             for roots in _sure(one):
                 reached += roots
@@ -49,7 +49,10 @@ def stalemate(consent: Consent, refused: Iterable[Activation], known: Stuck | No
             if not moved:
                 break
             stuck -= {one for one, _ in moved}
-            for _, refusal in moved:  # a moved activation waits for others, which may in turn wait for it
+            for (
+                _,
+                refusal,
+            ) in moved:  # this activation is refused even so: it waits for others, which may in turn wait for it
                 reached += [root for roots in refusal.sure for root in roots if root not in seen]
         if not any([_hangs(root) for root in reached]):
             return stuck

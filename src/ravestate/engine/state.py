@@ -4,7 +4,7 @@ An event finds its spikes and activations without a search: live spikes by signa
 activations by the need that they lack. So the cost of an event does not grow with the number of rules.
 
 The tables use three words. A *need* is one constraint of a clause. A *half* keeps first spikes for clauses with two
-needs (``halves.py``). A *bench* joins such spikes that share their second spike (``benches.py``).
+needs (``halves.py``). A *bench* is a table of first spikes that wait for the same second spike, or have it (``benches.py``).
 
 The parts of the engine share one state. Only `State.adopt` and these files change its tables:
 
@@ -130,11 +130,11 @@ class State(Memory):
         self.seats: dict[Half, dict[Spike, Bench]] = NOTHING
         """Half with benches → each spike that the half holds → the bench of the spike."""
         self.headless: dict[Spike, None] = NOTHING
-        """The counterparts of benches whose heads may have gone."""
+        """The counterparts of benches that may need a new head (the activation of the bench's oldest pair)."""
         self.patience_ends: dict[Spike, dict[Half, list[tuple[int, float]]]] = NOTHING
-        """Spike → half that holds the spike → pairs of a count and a time (seconds). The count says how many of the
-        half's best clauses are under pressure, including the clauses of earlier pairs. The time is the end of the
-        patience of the clauses that the pair adds (law L16)."""
+        """Spike → half that holds the spike → pairs of a count and a time (seconds). A count n says that the
+        first n clauses of the half, the best first, are under pressure. Earlier pairs have smaller counts. The time is
+        the end of the patience of those clauses that no earlier pair counts (law L16)."""
         self.gated: dict[Activation, None] = NOTHING
         """Activations that hold all their spikes, but have a slot predicate that is false."""
         self.free = Free()
@@ -156,7 +156,7 @@ class State(Memory):
         """Hope → the waiting activations that have it. A hope is something outside an activation's groups that may lift
         the activation's refusal (``activation.py``)."""
         self.hope_counts: dict[tuple[int, int], int] = NOTHING
-        """Hope → its greatest count in the refusals of the activations that have it (`Horizon.hopes`)."""
+        """Hope → the greatest count that a refusal of a waiting activation has for it (`Horizon.hopes`)."""
         self.stirred: dict[tuple[int, int], None] = NOTHING
         """The hopes that have changed. The activations that have them ask again (`Waits.wake`)."""
         self.alternatives: dict[Activation, tuple[tuple[Clause, ...], int, int]] = NOTHING
@@ -348,7 +348,9 @@ class State(Memory):
             self.faults = {}
         known = self.faults.get(id(predicate))
         if known is None or clause.index < known[0].index:
-            self.faults.pop(id(predicate), None)  # so that the faults of one clause stay in the order of their calls
+            self.faults.pop(
+                id(predicate), None
+            )  # the faults of one clause stay in the order in which its predicates were called
             self.faults[id(predicate)] = clause, predicate, exception
 
     def accepts(self, need: Need, payload: Any) -> bool:

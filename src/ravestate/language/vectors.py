@@ -23,11 +23,12 @@ def key_of(text: str) -> int:
 
 
 def built_in(texts: Sequence[str], size: int) -> tuple[NDArray[np.bool_], NDArray[np.int8]]:
-    """Return which of the texts have a ready-made vector, and these n vectors: shape (n, d), of any length.
+    """Return which of the texts have a ready-made vector, and the vectors of those n texts: shape (n, d), not normalised.
 
     Args:
-        texts: Sentences in plain form.
-        size: The size of the model's file in bytes. If the vectors were made for a file of another size, return none.
+        texts: Sentences in their plain form (`normal.plain`).
+        size: The size of the model's file in bytes. If the vectors were made for a model file of another size,
+            no text has a vector.
     """
     import numpy as np
 

@@ -64,7 +64,9 @@ class EagerTask:
         self._clean = variables
         self._renew()
         waiting: Any = host(self)
-        waiting.send(None)  # start now: a cancellation before the task's first step is then raised inside the generator
+        waiting.send(
+            None
+        )  # start the generator now, so that a cancellation before the task's first step is raised inside it
         self.task: asyncio.Task[Any] = loop.create_task(main(waiting), context=self._context)
 
     def _renew(self) -> None:

@@ -178,7 +178,9 @@ class JobQueue:
             return bool(self._waiting) or self._pool.is_full()
 
     def holders(self) -> list[Job]:
-        """Return the jobs whose threads other jobs need: this context's running jobs if its share is full, else all."""
+        """Return the running jobs that make other jobs wait.
+
+        If this context's share is full, these are its running jobs. Otherwise, they are the running jobs of all contexts."""
         with self._pool.change:
             full = len(self._begun) >= SHARE
             return [job for job in self._pool.at_work if not full or job in self._begun]

@@ -88,7 +88,7 @@ class Pipeline:
                 note_load()
 
     def normalise(self, text: str, names: Collection[str] = ()) -> Normal:
-        """Return the normal form of the first `LONGEST` characters of `text`. Text in another language stays as it is.
+        """Return the normal form of the first `LONGEST` characters of `text`. If the pipeline reads another language, the text stays as it is.
 
         Raises:
             PlatformError: See `load`.
@@ -224,7 +224,7 @@ def _is_name(word: Word) -> bool:
 
 
 def _without_stop(text: str) -> str:
-    """Return a text without the full stop at its end, unless the stop belongs to an abbreviation or an ellipsis."""
+    """Return a text without the full stop at its end, unless it ends with an abbreviation such as *e.g.*, or an ellipsis."""
     return text[:-1] if text[-2:-1].isalnum() and text.endswith(".") and "." not in text.split()[-1][:-1] else text
 
 

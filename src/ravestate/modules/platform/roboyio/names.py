@@ -44,7 +44,7 @@ class Settings(rs.Settings):
 module = rs.Module("roboyio", requires=(rawio, interloc, ros1, ros2), settings=Settings)
 
 here = module.flag("here", input=True)
-"""Whether this is the robot's own context, in an agent that also has a platform with many users."""
+"""Whether the context is the robot's own. An agent that also has a platform with many users has several contexts."""
 
 body: rs.Slot[Connection | None] = module.slot("body", None)
 """The connection to the robot; None if there is none, for example in virtual time."""

@@ -57,4 +57,4 @@ prosody: rs.Slot[Prosody] = module.slot("prosody", Prosody(), type=Prosody, inpu
 """The manner of the agent's speech. If the agent has the module `emotion`, its feelings set this slot."""
 
 conversation: rs.Slot[Conversation | None] = module.slot("conversation", None)
-"""The open line with its ear, mouth and models; None if no line is open."""
+"""The open line (the sound to and from one user) with its ear, mouth and models; None if no line is open."""

@@ -24,7 +24,7 @@ class Settings(rs.Settings):
     """The agent's life file, and the delay before the agent offers to talk about itself."""
 
     life: Path | None = None
-    """The designer's life file. It changes the facts and topics that it mentions; all others stay."""
+    """The designer's life file. The facts and topics in it replace those of the built-in file; all others stay."""
     prompt_after: Annotated[float, Field(gt=0)] = 60.0
     """Seconds of silence after which the agent invites the user to ask about the agent. This happens only once, and only
     after six utterances of the user."""
@@ -50,7 +50,7 @@ remarked = module.signal("remarked", payload=Remark)
 nearly all other answers. The payload has the topic."""
 
 life: rs.Slot[Life | None] = module.slot("life", None, type=Life, input=True)
-"""The agent's life, read from the files at startup. Facts in the agent's memory override the facts of these files."""
+"""The agent's life, read at startup from the built-in file and the designer's. Facts in the agent's memory override them."""
 
 mood: rs.Slot[str] = module.slot("mood", "fine", type=str, input=True)
 """The agent's mood as an adjective, for the answer to *how are you*. Any module may write this slot."""

@@ -32,8 +32,8 @@ The agent sends OPEN, BIND, UNBIND, ACK, CANCEL, ASK, CLOSE and HANGUP. The brid
 SUBSCRIBER and PUBLISHER. Both send MESSAGE, CALL, ANSWER and FAULT. SUBSCRIBER and PUBLISHER come with a socket, which
 is the connection with another node.
 
-BIND opens a channel, and UNBIND closes it. ACK allows the next message of a channel. TOLD answers the question ASK about
-the network. NOTE is a text for the log. HANGUP says that a connection has ended.
+BIND opens a channel, and UNBIND closes it. ACK allows the next message of a channel. ASK is a question about the network,
+and TOLD is its answer. NOTE is a text for the log. HANGUP says that a connection has ended.
 """
 
 
@@ -136,7 +136,7 @@ class Outlet:
         self._pipe.send(MESSAGE, self._channel, 0, body)
 
     def acknowledge(self):
-        """Note that the agent has handled the last message."""
+        """Record that the agent has handled the last message."""
         with self._lock:
             body, self._pending = self._pending, None
             self._busy = body is not None

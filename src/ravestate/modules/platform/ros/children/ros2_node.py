@@ -10,7 +10,7 @@ import threading
 
 from pipe import ANSWER, CALL, FAULT, FEEDBACK, SEEKING, Pipe, every, reason, serve
 
-LOOK = 1.0  # seconds between two looks at the types of other nodes
+LOOK = 1.0  # seconds between two checks of the message types that other nodes use
 
 UNKNOWN = "_NODE_NAME_UNKNOWN_"
 
@@ -96,7 +96,7 @@ class Ros2Node:
         self._executor.wake()
 
     def _look_at_types(self):
-        """Warn about each node whose type for a topic is not this node's type. ROS 2 neither connects nor reports it."""
+        """Warn about each node whose type for a topic is not this node's type. ROS 2 does not connect such a node, and does not report the mismatch."""
         for channel, binding in list(self._bindings.items()):
             name, type_ = binding["name"], binding["type"]
             if binding["kind"] == "subscriber":
