@@ -51,6 +51,13 @@ def ask(sim: Simulation, rule: str, signal: str = "demo:input:changed", number: 
     return found
 
 
+def answer_late(stage: Stage, question: rs.Signal[Any]) -> None:
+    """Declare a rule that gives up its input before a question can come."""
+
+    @stage.module.rule(when=stage.input.changed.max_age(1.0) & question, writes=stage.output)
+    async def qa(ctx: rs.RuleContext) -> None: ...
+
+
 def conversation(stage: Stage, is_question: bool, resigns: bool = False, slow: float = 0.0) -> None:
     """Declare a classifier, a rule that answers questions, and small talk for all other inputs."""
     question = stage.module.signal("question")
@@ -170,9 +177,7 @@ def test_why_not_says_when_a_missing_signal_was_raised_not_when_the_run_of_its_r
         await ctx.sleep(3.0)
         return rs.Resign("there is nothing more to classify")
 
-    @stage.module.rule(when=stage.input.changed.max_age(1.0) & question, writes=stage.output)
-    async def qa(ctx: rs.RuleContext) -> None: ...
-
+    answer_late(stage, question)
     with stage.run() as sim:
         sim.put(stage.input, "?")
         sim.advance(2.5)
@@ -200,9 +205,7 @@ def test_why_not_finds_the_run_that_raised_a_missing_signal_among_several_runs(s
         if ctx.payload(part) == "who":
             ctx.emit(question)
 
-    @stage.module.rule(when=stage.input.changed.max_age(1.0) & question, writes=stage.output)
-    async def qa(ctx: rs.RuleContext) -> None: ...
-
+    answer_late(stage, question)
     with stage.run() as sim:
         sim.put(stage.input, "who me")
         sim.advance(8.0)

@@ -20,8 +20,8 @@ ONLOOKERS = 8  # the maximum number of windows that may show one conversation at
 class Sessions:
     """All conversations with one agent. The agent makes a context for each of them.
 
-    A conversation without a browser window is kept for `keep` seconds. If there are `limit` conversations already, a
-    new conversation ends one that has no window. If all of them have windows, the new conversation is refused.
+    A conversation without a browser window is kept for `keep` seconds. If there are `limit` conversations already, one
+    without a window ends to make room for a new one. If all have windows, the new conversation is refused.
     """
 
     def __init__(self, agent: Agent, *, limit: int, keep: float) -> None:
