@@ -1,8 +1,8 @@
 """The kind of a question or request (language/examples/asks.yaml), its area of life, and the words that it names.
 
-The listener looks up an answer by kind and area (areas.yaml, mostly recommendations and the agent's own tastes), or else
-by kind alone (asked.yaml). The words come from the
-parse: the options of a choice, the thing that the question is about, and question words such as *how many eggs*.
+The listener looks up an answer by kind and area (areas.yaml, mostly recommendations and the agent's own tastes), or
+else by kind alone (asked.yaml). The words come from the parse: the options of a choice, the thing that the question is
+about, and question words such as *how many eggs*.
 """
 
 from __future__ import annotations

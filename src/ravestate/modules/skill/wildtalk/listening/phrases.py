@@ -1,4 +1,4 @@
-"""Phrases of the listening skill."""
+"""A phrase of the listening skill, its placeholders (*roles*), and the phrases that answer one kind of utterance."""
 
 from __future__ import annotations
 
