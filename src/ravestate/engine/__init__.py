@@ -5,7 +5,7 @@ The automaton is pure. It uses no clock, thread, lock or random number, and does
 The code cites the laws of the automaton by number, such as L15. ``docs/explanation/processing-model.md`` explains the
 laws, and ``tests/laws`` has one file of tests for each law.
 
-A working `Engine` has `Parts` (``parts.py``): objects that share one `State`, each with a file of its own. An event
+A working `Engine` has `Parts` (``parts.py``): objects that share one `State`. Each part has a file of its own. An event
 passes through the parts in this order:
 
 1. *Receive.* `Engine.receive` finds the event's handler in the table `HANDLERS` (``parts.py``). A write goes to
@@ -13,16 +13,16 @@ passes through the parts in this order:
 2. *Match.* `Matching.birth` creates the spike and offers it to activations, which take it with `Holdings.acquire`. Then
    `Holdings.update` finds out whether the activation is ready. A simple clause needs no such check, because one spike
    makes it ready (`Clause.simple`). `Holdings.complete` queues the ready activation. `Halves`, `Benches` and
-   `ConflictSets` create an activation only when it may run, so most activations are never created.
+   `ConflictSets` create many activations only when they may run. So most possible activations are never created.
 3. *Start.* `Engine.effects` runs the loop in `Parts.effects`, until a run must start or stop, or nothing is left to do.
    Activations that need no consent start first (`Agenda.start_free`). The caller performs the returned effects, reports
    the runs that have ended, and calls `Engine.effects` again.
-4. *Consent.* When these activations have started, `Agenda.consent_round` lets the other ready activations ask for
-   consent. `Consent.ask` looks for rivals, and a `Horizon` judges whether each rival may still become ready. With
-   consent, `Runs.start` starts the run. Without it, `Waits.begin` keeps the `Refusal`. A `Roster` finds the rivals in a
-   large group. If a refusal is certain, `Leaders` finds it without a search. `stalemate` finds activations that wait
-   only for each other.
-5. *End.* `Runs.finish` settles a run by the table `OUTCOMES`.
+4. *Consent.* When the activations of step 3 have started, `Agenda.consent_round` lets the other ready activations ask
+   for consent. `Consent.ask` looks for rivals (better clauses that write the same slots), and a `Horizon` judges
+   whether each rival may still become ready. With consent, `Runs.start` starts the run. Without consent, `Waits.begin`
+   keeps the `Refusal`, the reasons for the wait. A `Roster` finds the rivals in a large group. If a refusal is certain,
+   `Leaders` finds it without a search. `stalemate` finds activations that wait only for each other.
+5. *End.* `Runs.finish` settles a run by the table `OUTCOMES` (``outcomes.py``).
 6. *Wake.* A change that may lift a refusal marks a causal group in `State.dirty`, or a *hope* in `State.stirred`, or
    puts the refused activation into `State.asking`. A hope is something outside the activation's groups that may lift
    its refusal (``activation.py``). The next round of consent begins with `Waits.wake`, which returns the activations

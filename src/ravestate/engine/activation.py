@@ -5,8 +5,8 @@ meets it. With consent, the activation becomes a run of the rule. Every clause a
 holds no spike yet. No object represents a stand-by: the engine creates an object only when the first spike comes.
 
 - `GATHERING`: the activation lacks a spike, a spike is too young, or a predicate on a slot is false.
-- `READY`: the activation holds all its spikes, all are old enough, and it asks for consent or, if it needs none,
-  starts.
+- `READY`: the activation holds all its spikes, all are old enough, and its slot predicates are true. It asks for
+  consent or, if it needs none, starts.
 - `WAITING`: a group refused consent; the activation asks again when something changes.
 - `RUNNING`: the rule's function runs.
 - `CANCELLING`: the engine has cancelled the function, which is cleaning up.
@@ -82,7 +82,7 @@ WAITING: Final = 2
 RUNNING: Final = 3
 ENDED: Final = 5
 NAMES: Final = tuple(state.name.lower() for state in State)
-"""The names of the states, in lower case, by the integer of the state."""
+"""The names of the states, in lower case; the integer of a state is the index of its name."""
 COMPLETE: Final = 0
 LOSE: Final = 1
 REFUSE: Final = 2
@@ -108,13 +108,15 @@ class Activation:
         patience_ends: Key: a group in which other activations wait for this one; value: the time at which this
             activation's patience ends in that group (seconds; L16).
         refusal: The reasons for which it waits; None unless it waits.
-        stands_on: The non-detached spikes of the run: the parents of the spikes that it raises.
+        stands_on: The spikes that the run holds for non-detached needs. They are the parents of the spikes that the run
+            raises, unless its rule is detached.
         origin: The origin of the run (`Spike.origin`).
         groups: The groups in which the run took its slots when it began. They may have merged since.
         wrote: Whether the run has written a slot.
         deadline: The time at which the run times out (seconds).
         told: The reason for which the engine cancelled the run; empty if the engine did not cancel it.
-        lineage: The rules that led to the run, including its own rule. Kept only in an instant with many runs (L23).
+        lineage: The rules that led to the run within its instant, including its own rule; None if the instant had few
+            runs (L23).
     """
 
     __slots__ = (
@@ -204,7 +206,7 @@ class Activation:
         return None
 
     def firm_groups(self) -> list[Group]:
-        """Return the causal groups to which its non-detached spikes belong now, each group once."""
+        """Return the present causal groups of the activation's spikes for non-detached needs, each group once."""
         if not self._several and self.clause.firm_bits:
             only = self._only
             return [] if only is None else [only.group if only.group.into is None else only.group.root()]
@@ -218,7 +220,7 @@ class Activation:
         return found
 
     def firm_spikes(self) -> tuple[Spike, ...]:
-        """Return its non-detached spikes: the parents of the spikes that its run raises."""
+        """Return the activation's spikes for non-detached needs: the parents of the spikes that its run raises."""
         if self.clause.firm_bits == self.clause.all_bits and not self.missing:
             return self.spikes  # type: ignore[return-value]  # nothing is missing
         return tuple(
@@ -254,19 +256,20 @@ class Refusal:
     """The reasons for which an activation must wait. If `names` is empty, the activation has consent.
 
     Attributes:
-        names: Key: the name of a rule that the activation waits for; value: the best of the rule's clauses that it
-            waits for. Such a clause is a rival, or its run has taken a slot.
+        names: Key: the name of a rule that the activation waits for; value: the best of the rule's clauses that the
+            activation waits for. Such a clause is a rival, or its run has taken a slot.
         blockers: The live activations on whose progress the refusal depends. `explain` does not show them.
         sure: An entry for each rival whose readiness depends only on work in progress: the activations that do this
             work.
         taken: Whether a run has taken one of the activation's slots.
-        in_doubt: Whether a rival may never be ready. If so, only the end of the rival's patience ends the wait.
+        in_doubt: Whether a rival may never become ready. If so, the wait ends at the latest with the rival's patience.
         hopes: Key: a hope of the activation; value: the hope's count (`Horizon.hopes`).
         interests: The groups whose changes may lift the refusal.
-        leader: The activation that this one follows (``leaders.py``), or None.
+        leader: The better activation for which this one waits without examining other rivals (``leaders.py``), or None.
         told: The names of rules in the trace's record of this wait; empty without a tracer.
-        recheck: The earliest time (seconds) at which the refusal may end without any event: because a rule recovers,
-            because a spike becomes too old, or because the patience of a rival without an activation ends.
+        recheck: The earliest time (seconds) at which the refusal may end without any event: because a rule recovers
+            from its cooldown, because a spike becomes too old, or because the patience of a rival without an activation
+            ends.
     """
 
     __slots__ = ("blockers", "sure", "hopes", "interests", "leader", "names", "in_doubt", "recheck", "taken", "told")

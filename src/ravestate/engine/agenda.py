@@ -51,7 +51,7 @@ class Agenda:
         self.places: dict[Activation, Any] = {}
         """Activation in the queue → its valid place. The queue may also hold outdated places of the activation."""
         self.recovering = False
-        """Whether time changes the order of the queue, because rules with a cooldown are in it."""
+        """Whether time changes the order of the queue, because activations of rules with a cooldown are in it."""
         self.time = 0.0
         """The time (seconds) at which the queue was last put in order."""
         self.breakers: list[tuple[tuple[float, int, int], Activation]] = []
@@ -91,8 +91,8 @@ class Agenda:
     def consent_round(self) -> None:
         """Let ready activations ask for consent: oldest cause first, and for one cause the best activation first.
 
-        If a rule has started in this round, an activation that reads one of the rule's slots asks in the next round. By
-        then, the rule has made the writes that precede its first suspension, and the activation sees them.
+        If a rule has started in this round, an activation that may read a slot that the rule writes asks in the next
+        round. By then, the rule has made the writes that precede its first suspension, and the activation sees them.
         """
         state, queue, places = self.state, self.queue, self.places
         line = queue.line
@@ -172,8 +172,8 @@ class Agenda:
         queue.join(turns)
 
     def _may_ask(self, activation: Activation) -> bool:
-        """Return whether an activation may ask: it is ready or waits, its guards are true, and it is not deferred as
-        a turn of a loop (L23)."""
+        """Return whether an activation may ask: it is ready or waits, its guards (slot predicates) are true, and it is
+        not deferred as a turn of a loop (L23)."""
         if activation.state not in (READY, WAITING):
             return False
         if activation.clause.guards and not self._pass_guards(activation):
@@ -184,8 +184,8 @@ class Agenda:
     def _ask(self, activation: Activation) -> bool:
         """Ask for consent; return whether the activation has it. If not, the activation waits.
 
-        A *bench* has spikes that share a second spike; only its *head* is an activation (``benches.py``). If the
-        refused activation is the head of a bench, the bench gets a new head.
+        A *bench* keeps spikes that share a second spike. Only one of these pairs has an activation, the *head* of the
+        bench (``benches.py``). If the refused activation is the head of a bench, the bench gets a new head.
         """
         refusal = self.consent.ask(activation)
         if refusal.names:
@@ -264,7 +264,8 @@ def _is_taken(activation: Activation) -> bool:
 def _presses(activations: Iterable[Activation]) -> bool:
     """Return whether one of the activations counts for ``core:pressure``.
 
-    An activation does not count if its clause hears a built-in flag, or has a predicate on one (`Clause.reflexive`).
+    An activation does not count if its clause hears a built-in flag, or has a predicate on such a flag
+    (`Clause.reflexive`).
     """
     for activation in activations:
         if not activation.clause.reflexive:

@@ -1,4 +1,4 @@
-"""A bench: first spikes of a clause that wait for the same second spike, their *counterpart*.
+"""A bench: first spikes of a clause that wait for the same second spike, their *counterpart*, or share it already.
 
 A clause with two constraints takes two spikes. A *half* keeps the first spikes of such a clause, without activations
 (``halves.py``). ``benches.py`` explains the use of benches.
@@ -17,7 +17,8 @@ class Bench:
 
     Attributes:
         half: The half.
-        spikes: The spikes, oldest first. Each has a number *n*: if it gets activations, they are numbered from *n* + 1.
+        spikes: The spikes, oldest first. Each has a number *n*: if it gets activations, they are numbered from *n* + 1
+            on.
         partner: The counterpart, or None if the spikes lack one.
         late: The spikes that became too old for the half while they had a counterpart.
     """

@@ -10,14 +10,14 @@ counterpart.
 
 A clause has benches only if no better clause competes with it (`Half.sole`). The clause's activations wait for no
 rival, so a group refuses them only while one of their slots is taken there. If a group refuses the head, the
-engine creates a new head for the next first spike. The new head asks in the same round of consent.
+engine creates a new head for the next first spike. The new head asks in the same round (`Agenda.consent_round`).
 
 So the pairs ask in the order of their first spikes, the oldest first. In consent, older causal groups go first. The two
 orders agree: a first spike comes from outside or from a detached rule, and so begins a group. Before a group merges,
 its spikes leave their benches.
 
-`Consent` treats each spike on a bench with a counterpart as a ready activation. Activations of clauses with less
-utility wait for this activation.
+`Consent` treats each spike on a bench with a counterpart like a ready activation: activations of clauses with less
+utility wait for it.
 """
 
 from __future__ import annotations
@@ -52,7 +52,7 @@ class Benches:
         """Look again at each bench whose counterpart is `partner`.
 
         If a bench can no longer use this counterpart, give the bench another one. Otherwise, create the bench's head,
-        unless another activation runs with the counterpart, or will ask before the head.
+        unless another activation of its clause runs with the counterpart, or will ask before the head.
         """
         state = self.state
         for bench in list(state.benches.get(partner, {}).values()):
@@ -124,7 +124,8 @@ class Benches:
         self._lead(bench, partner)
 
     def _move(self, bench: Bench) -> None:
-        """Give a bench the oldest live counterpart that fits (L12). If none fits, the bench waits for the next."""
+        """Give a bench the oldest live counterpart that fits (L12). If none fits, the bench waits for the next
+        counterpart."""
         state, half = self.state, bench.half
         self.holdings.entries.vacate(bench)
         need = other_need(half.needs[0])
@@ -157,7 +158,8 @@ class Benches:
         return longer
 
     def _lead(self, bench: Bench, partner: Spike) -> None:
-        """Create a bench's head, unless another activation runs with the counterpart, or will ask before the head."""
+        """Create a bench's head, unless another activation of its clause runs with the counterpart or will ask
+        first."""
         need = bench.half.needs[0]
         first = next(iter(bench.spikes))
         cause = min(first.group.root().id, partner.group.root().id)

@@ -2,13 +2,13 @@
 
 A thousand rules that hear the same signal and write the same slot would need a thousand activations. One would run, and
 the rest would lose the spike. So only the best clause (with the greatest utility x weight) gets an activation. The
-other clauses form the activation's queue of alternatives. If the activation's run resigns or fails, the next clause
-gets an activation.
+other clauses form the activation's queue of alternatives. If the activation's run resigns, or fails before it writes,
+the next clause gets an activation.
 
 If there is a tracer, or when a rule retires or is added, the queue *unfolds* into ordinary activations. It also unfolds
-if a rival's utility may lie between those of the clauses (`Consent.is_contested`). The number of each activation is
-fixed from the start, and no signal that an alternative raises can help a rival (`find_conflict_sets`). So it does not
-matter when a queue unfolds. An explanation unfolds nothing.
+if a rival's utility may lie between the utilities of the clauses (`Consent.is_contested`). The number of each
+activation is fixed from the start, and no signal that an alternative raises can help a rival (`find_conflict_sets`). So
+it does not matter when a queue unfolds. An explanation unfolds nothing.
 """
 
 from __future__ import annotations
@@ -48,7 +48,7 @@ class ConflictSets:
             self.unfold_all()
 
     def substitute(self, activation: Activation) -> None:
-        """Put the next alternative in the place of an activation that has resigned or failed."""
+        """Create the activation of the next alternative after a run that has resigned, or failed before it wrote."""
         queued = self.state.alternatives.pop(activation, None)
         spike = activation.spike(activation.clause.needs[0])
         if queued is not None and spike is not None and not spike.group.root().finished(activation.clause.rule.slots):
@@ -86,7 +86,7 @@ class ConflictSets:
         return True
 
     def _next(self, clauses: tuple[Clause, ...], position: int, base: int, spike: Spike) -> None:
-        """Create the activation of the clause at a position; the clauses after it become its alternatives."""
+        """Create the activation of the clause at a position; the later clauses become its alternatives."""
         activation = self._activate(clauses[position], base + position + 1, spike)
         if position + 1 < len(clauses):
             if self.state.alternatives is NOTHING:

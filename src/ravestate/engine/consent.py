@@ -1,17 +1,18 @@
 """Consent (law L15): whether a ready activation may run now, and if not, which activations it waits for.
 
 The activation asks each causal group of its spikes. A group refuses while a run in the group has taken a slot that the
-activation writes. It also refuses while a *rival* stands in the group: another clause that writes such a slot, has
-greater effective utility, and may still become ready. The rival must also hold a spike of the group, or lack a signal
-that a rule of the group may cause.
+activation writes. It also refuses while the group has a *rival*: another clause that writes one of the activation's
+slots, has greater effective utility, and may still become ready. An activation of the rival must hold a spike of the
+group, or the rival must lack a signal that the group may cause.
 
 If only an input or a rule of another group can make a rival ready, the rival is under *pressure*: it has a limited time
 to become ready, its *patience*. When the patience ends, the activation stops waiting for the rival. A rival gets its
 patience once in each group (L16).
 
 A clause without an activation may be a rival, too. A *half* (``halves.py``) keeps first spikes of pairs, without
-activations, for such clauses. `_judge_half` judges these rivals. Or the rival is the clause's *stand-by*, which holds
-no spike. With a tracer, halves hold no spikes, and `_judge_rival` judges all rivals.
+activations, for such clauses. `_judge_half` judges these rivals. Each clause also has a *stand-by*, an activation that
+holds no spike yet, and that may be a rival. While the engine has a tracer, halves hold no spikes, and `_judge_rival`
+judges all rivals.
 """
 
 from __future__ import annotations
@@ -158,10 +159,10 @@ class Consent:
     def _judge_half(
         self, refusal: Refusal, horizon: Horizon, best: Need, spike: Spike, clause: Clause, *, commit: bool
     ) -> bool:
-        """Judge the clauses of a half that holds a spike. Return whether a clause was eliminated.
+        """Judge the rivals among the clauses of a half that holds a spike. Return whether a clause was eliminated.
 
         Each clause lacks only a second spike. If all have the same prospects of getting it, the verdict on the best
-        clause holds for all. Otherwise, the half unfolds: each clause gets an activation, which `ask` judges.
+        clause applies to all. Otherwise, the half unfolds: each clause gets an activation, which `ask` judges.
 
         If a clause may still become ready, add it to `refusal`, which `ask` returns.
         """
@@ -231,18 +232,19 @@ class Consent:
         return eliminated
 
     def _best(self, half: Half, spike: Spike, clause: Clause) -> Need | None:
-        """Return the need of the best rival of `clause` for which a half holds a spike; None if there is none."""
+        """Return the need of the best rival of `clause` among the clauses for which a half holds a spike; None without
+        a rival."""
         for need in half.best:
             if need.clause is not clause and self.state.keeps(need, spike):
                 return need if self.state.standing.is_ahead(need.clause, clause) else None
         return None
 
     def is_contested(self, best: Activation) -> bool:
-        """Return whether a rival's utility may lie between those of the clauses of a conflict set.
+        """Return whether a rival may stand between the clauses of a conflict set in the order of utility.
 
         The clauses of a conflict set compete for each spike (``conflict_sets.py``). Only the best one has an
-        activation; the others are its alternatives. A rival in between waits for the best clause, and an alternative
-        waits for the rival.
+        activation; the others are its alternatives. A rival in between would wait for the best clause, and an
+        alternative would wait for the rival.
         """
         state = self.state
         clauses = state.alternatives[best][0]
@@ -309,7 +311,7 @@ class Consent:
         return until
 
     def eliminate(self, rival: Activation) -> None:
-        """End a rival whose patience has ended. The rival's rule gives the spikes up for good (L16)."""
+        """End a rival whose patience has ended. The rival's rule gives the rival's spikes up for good (L16)."""
         for spike in rival.firm_spikes():
             # Unfold now: once the rule has given the spike up, an alternative of this rule cannot take it.
             for other in list(spike.holders) if self.state.alternatives else ():
@@ -350,7 +352,7 @@ class Consent:
     def _rivals(self, activation: Activation, group: Group) -> list[tuple[Clause, list[Activation]]]:
         """Return the possible rivals of an activation in a group, in declaration order, with their activations there.
 
-        A clause that has only its stand-by there is left out if it has less utility than the activation's clause.
+        A clause without an activation in the group is left out if it has less utility than the activation's clause.
         """
         clause = activation.clause
         slots = clause.rule.slotset

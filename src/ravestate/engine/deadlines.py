@@ -1,4 +1,5 @@
-"""The deadlines, in one heap. An entry becomes stale when its owner gets another deadline, or no longer needs one.
+"""The deadlines, in one heap. An entry becomes stale when its owner (such as an activation or a spike) gets another
+deadline, or no longer needs one.
 
 `Deadlines` knows which entries are stale. ``parts.py`` has a table, `DUE`, of handlers for entries that are due.
 
@@ -21,7 +22,7 @@ if TYPE_CHECKING:
 
 
 class Kind(enum.IntEnum):
-    """A kind of deadline. Deadlines at the same time fall due in this order.
+    """A kind of deadline. Deadlines at the same time are due in the order of these kinds.
 
     So an activation becomes ready before it could lose a spike.
     """
@@ -29,10 +30,8 @@ class Kind(enum.IntEnum):
     RIPEN = 0  # all spikes of an activation are old enough
     LOOK = 1  # a spike is old enough for a detached need
     RECHECK = 2  # a reason to wait may end at this time (`Refusal.recheck`)
-    PATIENCE = (
-        3  # the patience ends of an activation that others wait for (it lacks an input, or an effect of another group)
-    )
-    EXPIRE = 4  # a spike is too old for an incomplete activation, or for a half
+    PATIENCE = 3  # a rival's patience ends: others wait for it, and it lacks an input or an effect of another group
+    EXPIRE = 4  # a spike is too old for an activation that is not ready, or for a half
     FORGET = 5  # a spike is too old for every detached need
     TIMEOUT = 6  # a run times out
     WATCH = 7  # the spikes of an `until` condition are old enough
@@ -42,8 +41,8 @@ class Kind(enum.IntEnum):
 RIPEN, LOOK, RECHECK, PATIENCE, EXPIRE, FORGET, TIMEOUT, WATCH = Kind
 
 Entry = tuple[float, Kind, int, Any]
-"""A deadline: its time (seconds), its kind, how many deadlines were added up to it, and the owner: the object that it
-concerns."""
+"""A deadline: its time (seconds), its kind, its number in the order of `Deadlines.add`, and its owner: the object that
+it concerns."""
 
 
 class Deadlines:

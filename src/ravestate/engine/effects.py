@@ -77,8 +77,9 @@ class Spiked:
 class Ended:
     """A report of the outcome of a run, if the engine has `report_ends`.
 
-    ``fired`` is false if the run resigned. It is also false if the run failed, or lost its spike by a `Wipe`, before it
-    wrote a slot. An interrupted run has fired, even if it failed afterwards.
+    ``fired`` says whether the run consumed its spikes for the slots that its rule writes. It is false if the run
+    resigned. It is also false if the run failed, or lost its spike by a `Wipe`, before it wrote a slot. An interrupted
+    run has fired, even if it failed afterwards.
     """
 
     run: int

@@ -3,8 +3,9 @@
 The engine has four verbs: `receive` an event, `advance` to a time, ask for the `next_deadline`, take the `effects`.
 Time is an argument, in seconds from any origin. The engine uses no clock, thread or event loop.
 
-Most engines are at rest most of the time: nothing is live, and nothing is left to do. Such an engine has only its
-`Memory`. To handle an event, it borrows `Parts` from the policy, and returns them when it comes to rest.
+Most engines are at rest most of the time: they have no live spike or activation, and nothing is left to do. Such an
+engine has only its `Memory` (its slots and counters). To handle an event, it borrows `Parts` (the objects that do the
+work) from the policy. It returns them when it comes to rest.
 """
 
 from __future__ import annotations
@@ -24,7 +25,7 @@ from ravestate.errors import EngineError
 from ravestate.policy.policy import Policy
 
 DEFAULT_PATIENCE = 1.0
-"""How long (seconds) activations wait by default for a rival that may never become ready: its *patience* (law L16)."""
+"""By default, activations wait this long (seconds) for a rival that may never be ready: its *patience* (law L16)."""
 
 SPARE: Final = 64
 """The maximum number of unused `Parts` that a policy keeps for its engines."""
@@ -58,14 +59,15 @@ class Engine:
     # ------------------------------------------------------------------------------------ the four verbs
 
     def receive(self, event: Event, now: float) -> None:
-        """Handle an event at the time `now` (seconds). An earlier time counts as the latest time so far.
+        """Handle an event at the time `now` (seconds). If `now` has passed already, the latest time so far counts.
 
         Raises:
             UndeclaredError: The policy does not have the signal or slot of the event, or a run writes a slot that its
                 rule does not declare.
             RuleError: The value for a collection is not a mapping.
-            EngineError: The event comes from a run that is over, or is of an unknown type or kind. Or the event does
-                not fit its slot or the policy, or the time is NaN.
+            EngineError: The event comes from a run that is over, or its type or its `Finish.kind` is unknown. Or the
+                event stores or removes an item, but the slot is no collection. Or the event adds a policy that does not
+                extend the present one. Or the time is NaN.
         """
         rested = self._parts is None
         parts = self.parts_at(now)
@@ -78,7 +80,7 @@ class Engine:
             self._rest(parts)  # no rule hears the event
 
     def advance(self, now: float) -> None:
-        """Let time pass until `now` (seconds), deadline by deadline. A repeated or early call changes nothing."""
+        """Let time pass until `now` (seconds), deadline by deadline. A time that has passed already changes nothing."""
         if self._parts is not None:
             self._parts.advance(now)
         else:
@@ -118,14 +120,16 @@ class Engine:
         return parts
 
     def parts_at(self, now: float) -> Parts:
-        """Let time pass until `now` (seconds), and return the parts. An event given to the parts reaches no journal."""
+        """Let time pass until `now` (seconds), and return the parts. If the caller gives them an event, no journal
+        records it."""
         parts = self._parts or self.parts
         if now != parts.state.now:
             parts.pass_time(now)
         return parts
 
     def rest(self) -> None:
-        """Return the parts to the policy if nothing is live or left to do. Call this after reading `state`."""
+        """Return the parts to the policy if nothing is live or left to do. Call this after reading `state`, which
+        borrows them."""
         parts = self._parts
         if parts is not None and parts.state.at_rest:
             self._rest(parts)
@@ -177,7 +181,8 @@ class Engine:
 
     @property
     def late_turns(self) -> int:
-        """How many deferred turns ran in this instant after an error had named their loop (`Loops.late`, L23)."""
+        """How many deferred turns (runs of an endless loop) ran in this instant after an error had named their loop
+        (`Loops.late`, L23)."""
         return 0 if self._parts is None else self._parts.state.loops.late
 
     def read(self, slot: int) -> Any:

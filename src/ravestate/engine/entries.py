@@ -2,8 +2,8 @@
 
 A clause with two constraints, its *needs*, takes two spikes. A half keeps the first spike, without an activation, until
 the second spike comes. One half does this for all clauses that the engine can treat alike (``halves.py``). An *entry*
-is a spike that a half keeps. A *bench* is a table of entries that wait for the same second spike, the *counterpart*,
-or have it (``benches.py``).
+is a spike that a half keeps. A *bench* is a table of entries that wait for the same second spike, the *counterpart*, or
+share it already (``benches.py``). A *detached* need looks at a spike without consuming it.
 """
 
 from __future__ import annotations
@@ -28,7 +28,7 @@ class Entries:
         self.state = state
 
     def enter(self, spike: Spike, half: Half, before: int) -> None:
-        """Let a half hold a spike. If the spike gets activations later, they are numbered from `before` + 1."""
+        """Let a half hold a spike. If the spike gets activations later, they are numbered from `before` + 1 on."""
         state = self.state
         held = state.halves.get(half)
         if held is None:
@@ -48,7 +48,7 @@ class Entries:
             self.let_expire(spike, spike.born + half.max_age)
 
     def part(self, spike: Spike, need: Need) -> None:
-        """Make a half give a spike up for one clause, that of `need`. If no clause is left, drop the spike."""
+        """Make a half give a spike up for one clause, the clause of `need`. If no clause is left, drop the spike."""
         half = need.half
         if half is None or self.state.entries(half, spike) is None:
             return
@@ -139,7 +139,10 @@ class Entries:
         return True
 
     def let_expire(self, spike: Spike, due: float) -> None:
-        """Add a time (seconds) at which incomplete holders (activations and halves) give the spike up (L14)."""
+        """Add a time (seconds) at which holders that are not ready yet give the spike up (L14).
+
+        The holders are activations, and halves without a second spike.
+        """
         if due <= self.state.now or due not in spike.expiring:
             spike.expiring = (*spike.expiring, due)
             self.state.deadlines.add(due, EXPIRE, spike)

@@ -1,4 +1,5 @@
-"""Events: the inputs of an engine. The union `Event` lists all kinds. A journal keeps events for a replay."""
+"""Events: the reports and orders that an engine receives. The union `Event` lists all kinds. A journal keeps events for
+a replay."""
 
 from __future__ import annotations
 

@@ -40,11 +40,12 @@ class ActivationState:
     """An activation: the spikes that it holds, the signals that it lacks, and the rules that it waits for.
 
     Attributes:
-        state: ``gathering``, ``ripening``, ``gated``, ``ready``, ``waiting``, ``running`` or ``cancelling``.
+        state: ``gathering``, ``ripening`` (a spike is too young), ``gated`` (a slot predicate is false), ``ready``,
+            ``waiting``, ``running`` or ``cancelling``.
         holds: The signal and the age (seconds) of each spike that the activation holds.
         lacks: The signals of the spikes that it lacks.
-        waits_for: The rules that it waits for, and by how many nats each is ahead. This lead is 0 for a taken slot, a
-            tie, or utilities of 0.
+        waits_for: The rules that it waits for, and by how many nats each is ahead. This lead is 0 for a tie, for
+            utilities of 0, and for a rule that has taken a slot without being ahead.
         until: The time (seconds) by which the activation runs, times out or gives a spike up; None without a limit.
     """
 
@@ -68,7 +69,7 @@ class Explanation:
         clauses: The rule's clauses.
         activations: The rule's live activations.
         missing: A sentence for each of the rule's signals that did not occur in the trace: the rules that may raise the
-            signal, and how each rule last ended. Empty without a trace.
+            signal, and how the last run of each rule ended. Empty without a trace.
         history: The rule's latest records in the trace, as text. Empty without a trace.
         inputs: The rule's signals that are inputs. An input may come at any time, so only patience limits the wait for
             it.
@@ -185,8 +186,9 @@ def activations(state: State) -> dict[int, list[ActivationState]]:
 def stand_ins(state: State) -> dict[int, list[Activation]]:
     """Return, by the index of their rule, the activations that the engine has not made yet.
 
-    Entries of halves (``halves.py``) and alternatives (``conflict_sets.py``) stand for these activations. No table of
-    the engine has them, because an explanation changes nothing.
+    The engine keeps the spikes of these activations in halves (``halves.py``), or keeps their clauses as alternatives
+    to a better clause (``conflict_sets.py``). No table of the engine gets the activations themselves, because an
+    explanation changes nothing.
     """
     found: dict[int, list[Activation]] = {}
     for half, spikes in state.halves.items():
@@ -259,7 +261,7 @@ def why_given_up(lost: GaveUp, behind: str = "") -> str:
 
 
 def without(rule: str, ended: Settled) -> str:
-    """Return a phrase for a run of `rule` that has not raised the signal in question; `ended` is the run's end."""
+    """Return a phrase for a run of `rule` that has not raised the signal in question; `ended` records the run's end."""
     return f"{rule} {Outcome.say(ended.outcome)} without raising it, at {seconds(ended.time)}"
 
 
@@ -280,7 +282,8 @@ def join(names: Iterable[str]) -> str:
 
 
 def _missing(state: State, rule: RulePlan, records: Sequence[Record]) -> Iterator[str]:
-    """Yield a sentence for each signal of a rule that has not occurred: its possible causes, and how they ended."""
+    """Yield a sentence for each signal of a rule that has not occurred: the rules that may raise it, and how they
+    ended."""
     if not records:
         return
     occurred = {record.signal for record in records if isinstance(record, Born)}

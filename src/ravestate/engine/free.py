@@ -14,7 +14,7 @@ class Free(Line):
     Attributes:
         new: The activations that have become ready since the last call of `pop`.
         batch: Activations that became ready while the queue was empty, in reverse order. There may be thousands. They
-            get places only if other activations join before the whole batch has started.
+            get places (sort keys, ``line.py``) only if other activations join before the whole batch has started.
     """
 
     __slots__ = ("batch", "new")
@@ -80,7 +80,7 @@ def _is_sorted(activations: list[Activation]) -> bool:
 
 
 def _order(activation: Activation) -> tuple[int, int, int]:
-    """Return the sort key of an activation: its newest spike, then its clause's index, then its age."""
+    """Return the sort key of an activation: the number of its newest spike, its clause's index, and its own number."""
     return (activation.newest, activation.clause.index, activation.id)
 
 

@@ -37,28 +37,31 @@ class Nothing(dict[Any, Any]):
 
 
 NOTHING: Final[dict[Any, Any]] = Nothing()
-"""The shared empty table: the value of an attribute without entries. The first entry needs a table of its own."""
+"""The shared empty table. An attribute without entries has this value; before the first entry, replace it by a new
+table."""
 
 NO_NUMBERS: Final[frozenset[int]] = frozenset()
 """The shared empty set of numbers: the value of an attribute that seldom has members."""
 
 
 class Group:
-    """The slots that are taken in a group, and the activations that hold its spikes or wait in it.
+    """The slots that are taken in a causal group, and the activations that hold its spikes or wait for a change in it.
 
     Attributes:
         id: The group's number. Groups are numbered in the order in which they begin.
         taken: Key: the index of a slot that is taken in the group; value: the runs that hold the slot, or None if a
             run has finished with it.
-        entries: The group's spikes that a half holds (``halves.py``), and the counterparts of benches (``benches.py``).
-            Halves whose rules write no slot are left out, unless they have `Half.kin`.
+        entries: The group's spikes that halves and benches keep. A *half* keeps a spike without an activation, until a
+            second spike comes (``halves.py``). A *bench* keeps the second spike, too (``benches.py``). If the rules of
+            a half write no slot, the half's spikes are left out, unless `Half.kin` is true.
         interested: The waiting activations that ask for consent again when something changes in the group
             (`State.dirty`).
         patience_ends: The rivals under pressure that have no activation yet (L16). Key: the index of the rival's
             clause; value: the time (seconds) at which the rival's patience ends, possibly in the past.
-        roster: The members of a large group by slot and by rule (``roster.py``); None until a lookup needs it.
+        roster: An index of the group's `members` by slot and by rule (``roster.py``); None until a large group needs
+            it.
         answers: Key: the index of a slot; value: the rule that first finished with the slot, and the number of that
-            rule's activation. The engine fills this table only while there is a tracer.
+            rule's activation. The engine fills this table only while it records a trace (`State.tracer`).
     """
 
     __slots__ = (
@@ -96,7 +99,8 @@ class Group:
 
     @property
     def members(self) -> tuple[Activation, ...]:
-        """The activations with non-detached spikes of the group, in the order in which they joined."""
+        """The activations that hold a spike of the group for a non-detached constraint, in the order in which they
+        joined."""
         member = self._member
         if self._others:
             return tuple(self._others) if member is None else (member, *self._others)
@@ -110,14 +114,15 @@ class Group:
     def writers(self, slots: tuple[int, ...], causes: Causes) -> Iterable[Activation]:
         """Return the members that may write one of the slots, in the order in which they joined.
 
-        A small group has no roster (an index of its members). The result is then all members.
+        A small group has no roster (an index of its members). For a small group, the result is all its members.
         """
         return self.members if self.count <= FEW else self._roster(causes).writers(slots)
 
     def causers(self, slots: tuple[int, ...], causes: Causes) -> Iterable[RulePlan]:
-        """Return those of the members' rules that may trigger a writer of one of the slots.
+        """Return those of the members' rules that may trigger a rule that writes one of the slots.
 
-        A small group has no roster (an index of its members). The result is then the rules of all members.
+        A small group has no roster (an index of its members). For a small group, the result is the rules of all its
+        members.
         """
         if self.count <= FEW:
             return dict.fromkeys([member.clause.rule for member in self.members])
@@ -143,7 +148,7 @@ class Group:
         return activation is self._member or activation in self._others
 
     def join(self, activation: Activation) -> None:
-        """Record that an activation has a non-detached spike of the group."""
+        """Record that an activation holds a spike of the group for a non-detached constraint."""
         if self.has(activation):
             return
         if self._member is None and not self._others:
@@ -156,7 +161,7 @@ class Group:
             self.roster.enter(activation, activation.clause.rule)
 
     def part(self, activation: Activation) -> None:
-        """Record that an activation no longer has a non-detached spike of the group."""
+        """Record that an activation no longer holds a spike of the group for a non-detached constraint."""
         if activation is self._member:
             self._member = None
         elif activation in self._others:
@@ -170,7 +175,7 @@ class Group:
                 self.roster = None
 
     def take(self, slot: int, holders: tuple[Activation, ...] | None) -> None:
-        """Take a slot for the runs `holders`; None takes it for good. Runs of merged groups may share a slot."""
+        """Take a slot for the runs `holders`; None takes the slot for good. Runs of merged groups may share a slot."""
         if self.taken is NOTHING:
             self.taken = {slot: holders}
         else:
@@ -211,14 +216,14 @@ class Group:
             self.interested.pop(activation)
 
     def enter(self, spike: Spike) -> None:
-        """Record that a half holds a spike of the group."""
+        """Record that a half or a bench keeps a spike of the group."""
         if self.entries is NOTHING:
             self.entries = {spike: None}
         else:
             self.entries[spike] = None
 
     def leave(self, spike: Spike) -> None:
-        """Record that no half holds the spike any longer."""
+        """Record that no half and no bench keeps the spike any longer."""
         if spike in self.entries:
             self.entries.pop(spike)
 

@@ -2,8 +2,9 @@
 
 A clause with two constraints, its *needs*, takes two spikes. A *half* (`Half`) is a set of needs for the same signal,
 all of which the engine can treat alike. Suppose that a thousand rules have conditions such as `input & chess`, each
-with a topic of its own. They would need a thousand activations for each input, although few of the topics occur. So the
-half holds the first spike as an *entry* in a table (``entries.py``), without activations.
+with a topic of its own. They would need a thousand activations for each input, although few of the topics occur. So one
+half holds the input's spike for all these rules. The spike is an *entry* in a table (``entries.py``), without
+activations.
 
 The engine makes activations when the second spike, the *counterpart*, arrives. If many first spikes wait for it, the
 number of activations depends on the rule:
@@ -11,14 +12,14 @@ number of activations depends on the rule:
 - for a rule that writes no slot: one activation, with the oldest first spike
 - for a rule without a better rival (`Half.sole`): also one activation, but all first spikes share the counterpart
   (``benches.py``)
-- for any other rule: one activation with each first spike, because consent chooses one of them
-- for a rule that was added while a spike of its signals was live: also one activation with each first spike, because
-  each activation may later lose a spike, and take that live spike instead
+- for any other rule that writes a slot: one activation for each first spike, because consent chooses one of them
+- for a rule that writes no slot, but was added while a spike of its signals was live: also one activation for each
+  first spike, because each activation may later lose a spike, and take that live spike instead
 
 To *unfold* an entry is to make its activations. All entries unfold if there is a tracer, and when a rule retires or is
-added. The entries of a group unfold before the group merges. `Consent` unfolds an entry to judge its clauses one by
-one. The time of unfolding changes no decision: the numbers of these activations are fixed from the start, and no signal
-that their rules raise can help a rival (`find_halves`). An explanation unfolds nothing.
+added. The entries of a group unfold before the group merges. `Consent` unfolds an entry if it must judge the entry's
+clauses one by one. The time of unfolding changes no decision: the numbers of these activations are fixed from the
+start, and no signal that their rules raise can help a rival (`find_halves`). An explanation unfolds nothing.
 """
 
 from __future__ import annotations
@@ -53,7 +54,8 @@ class Halves:
         self.sets = sets
 
     def offer(self, signal: SignalPlan, spike: Spike) -> list[Need]:
-        """Offer a new spike to the halves of its signal. Return the needs to which the caller must still offer it."""
+        """Offer a new spike to the halves of its signal. Return the needs to which the caller must still offer the
+        spike."""
         state = self.state
         group = spike.group.root()
         if group.interested:
@@ -90,7 +92,8 @@ class Halves:
         return []
 
     def unfold_all(self) -> None:
-        """Create the activations of all entries, and of all alternatives of conflict sets (``conflict_sets.py``)."""
+        """Create the activations of all entries, and those of all alternatives: clauses that have no activation as long
+        as a better clause of their conflict set has one (``conflict_sets.py``)."""
         self.sets.unfold_all()
         for half, spikes in list(self.state.halves.items()):
             for spike in list(spikes):
@@ -106,7 +109,7 @@ class Halves:
                 self._make(need, spike)
 
     def unfold_clause(self, clause: Clause) -> None:
-        """Create the activations of a clause whose halves hold spikes."""
+        """Create the activations of a clause for the spikes that its halves hold."""
         state = self.state
         for need in clause.needs if state.halves else ():
             for spike in list(state.halves.get(need.half, ())) if need.half is not None else ():
@@ -119,8 +122,8 @@ class Halves:
         Kin needs may only hold spikes of one causal group.
 
         Under the old policy, an activation that lost a spike took the oldest live spike, and so formed the missing
-        pairs. Under the new policy, it may only take a spike of the same causal group (law L12). So each spike gets an
-        activation, with the first counterpart that came later.
+        pairs. Under the new policy, such an activation may only take a spike of the same causal group (law L12). So
+        each spike gets an activation, with the first counterpart that came after the spike.
         """
         for activations in list(self.state.active.values()):
             clause = next(iter(activations)).clause
@@ -173,7 +176,8 @@ class Halves:
                 self.unfold(spike, half)
 
     def take_over(self, activation: Activation, group: Group) -> None:
-        """Put a new activation under pressure in a group, if its clause's stand-by was under pressure there (L16)."""
+        """Put a new activation under pressure in a group, if its clause was under pressure there before it had a spike
+        (L16)."""
         until = (group.patience_ends or {}).get(activation.clause.index)
         if until is not None:
             self.holdings.put_under_pressure(activation, group, until)
@@ -194,10 +198,11 @@ class Halves:
         return activation
 
     def _pair(self, need: Need, spike: Spike, group: Group) -> bool:
-        """Make the activations for which a new spike is the counterpart. Return whether the clause needs no entry.
-
-        A clause whose rule writes no slot needs no entry: its activation with the oldest first spike takes the new
+        """Make the activations whose second spike is a new spike. Return whether the clause needs no entry for this
         spike.
+
+        If a clause's rule writes no slot, and a first spike waits, the clause needs no entry. The activation with the
+        oldest first spike then takes the new spike.
         """
         state = self.state
         partner = need.clause.needs[1 - need.index]
@@ -220,7 +225,7 @@ class Halves:
         return one and bool(found)
 
     def _has_elder(self, clause: Clause) -> bool:
-        """Return whether a live spike that fits a clause may have been born before the rule was added.
+        """Return whether a live spike that fits a clause may have been born before the clause's rule was added.
 
         No half holds such a spike, but an activation that loses another spike may take it (L12).
         """
@@ -254,8 +259,8 @@ class Halves:
         return found
 
     def _inherit_pressure(self, spike: Spike, half: Half, group: Group) -> None:
-        """If a clause's stand-by was under pressure, create an activation of the clause, and put the activation under
-        pressure."""
+        """If a clause was under pressure in the group before it had a spike, create an activation of the clause under
+        this pressure."""
         for number in group.patience_ends or ():
             clause = self.state.policy.clause_plans[number]
             place = half.places.get(clause.rule.index)

@@ -61,8 +61,8 @@ class Holdings:
     def put_under_pressure(self, activation: Activation, group: Group, until: float) -> None:
         """Give a new activation a patience that ends in a group at `until` (seconds; L16).
 
-        The activation replaces a stand-by, or an entry (a spike in a half, ``halves.py``), which was already under
-        pressure there.
+        The activation's clause was already under pressure there: either without a spike, or with a spike that a half
+        kept without an activation (``halves.py``).
         """
         activation.patience_ends = {group: until}
         if until > self.state.now:
@@ -89,7 +89,7 @@ class Holdings:
             self._trace_held(activation, spike)
 
     def offer_to_lacking(self, need: Need, spike: Spike) -> None:
-        """Offer a new spike to every activation that lacks it, oldest first (L12)."""
+        """Offer a new spike to every activation that lacks a spike for a need, oldest first (L12)."""
         lacking = self.state.lacking[need]
         for activation in sorted(lacking, key=by_age) if len(lacking) > 1 else tuple(lacking):
             if need.kin != need.bit and not self.is_coherent(activation, need, spike):
@@ -119,7 +119,7 @@ class Holdings:
             best: Spike | None = None
             for spike in reversed(state.live.get(need.signal.index, {})):
                 if state.fits(need, spike):
-                    best = spike  # if all spikes are too young, the oldest ripens first
+                    best = spike  # if all spikes are too young, the oldest will be old enough first
                     if spike.born + need.min_age <= state.now:
                         break
             if best is not None:
@@ -133,7 +133,8 @@ class Holdings:
             self.update(activation)
 
     def _rematch(self, activation: Activation, need: Need) -> None:
-        """If a live spike fits a need that has lost its spike, take the oldest such spike (L12)."""
+        """If a live spike fits a need that has lost its spike, take the oldest such spike (L12). A detached need takes
+        the newest."""
         if need.detached:
             self.look(activation, (need,))
         else:
@@ -175,7 +176,8 @@ class Holdings:
     def complete(self, activation: Activation, *, late: bool = False) -> None:
         """Make an activation ready and queue it, to ask for consent or, if it needs no consent, to start.
 
-        If the activation is a deferred turn of a loop (L23), only a second call, with `late`, queues it.
+        If the activation belongs to an endless loop, it may be deferred (L23). If so, only a second call, with `late`,
+        queues it.
         """
         state = self.state
         if not late:
@@ -199,7 +201,11 @@ class Holdings:
         self.state.gated.pop(activation, None)
 
     def _unhead(self, activation: Activation) -> None:
-        """If an activation was the head of a bench (``benches.py``), note that the bench needs another head."""
+        """If an activation was the head of a bench, note that the bench needs another head.
+
+        A *bench* keeps spikes that share a second spike. Its *head* is the activation of one of these pairs
+        (``benches.py``).
+        """
         state = self.state
         if state.benches:
             for spike in activation.spikes:
@@ -209,7 +215,7 @@ class Holdings:
                     state.headless[spike] = None
 
     def on_expire(self, time: float, spike: Spike) -> None:
-        """Make incomplete holders give up a spike that is too old for them (L14)."""
+        """Make holders that are not ready yet give up a spike that is too old for them (L14)."""
         for holder in spike.holders:
             if holder.state == GATHERING:
                 old = [need for need in _of_spike(holder, spike) if spike.born + need.max_age <= time]
@@ -227,8 +233,8 @@ class Holdings:
     def lose(self, activation: Activation, needs: Iterable[Need], reason: str, by: Activation | None = None) -> None:
         """Make an activation give up the spikes of `needs`, and end it if nothing keeps it alive.
 
-        A non-detached spike keeps an activation alive. If all needs of its clause are detached, any spike does. `by` is
-        the run that is the cause, or None.
+        A spike for a non-detached need keeps an activation alive. If all needs of its clause are detached, any spike
+        keeps it alive. `by` is the run that is the cause, or None.
         """
         needs = [need for need in needs if not need.bit & activation.missing]
         if not needs:
@@ -261,11 +267,13 @@ class Holdings:
             self.update(activation)
 
     def _twins(self, activation: Activation) -> list[Activation]:
-        """Return the other incomplete activations of the clause with the same spikes and the same patience.
+        """Return the other activations of the same clause that are not ready yet, and have the same spikes and
+        patience.
 
-        Each further spike is offered to all of these activations, but only one of them can consume the spikes. While
-        that one waits or runs, another of them may still be a rival of activations outside this set (L16). More than
-        two have no use: if the clause never got its last spike, each new spike would add another activation (L23).
+        Each further spike is offered to this activation and all the others, but only one of them can consume the
+        spikes. While that one waits or runs, another of them may still be a rival of activations outside this set
+        (L16). More than two such activations have no use: if the clause never got its last spike, each new spike would
+        add another activation (L23).
         """
         if not activation.clause.firm_bits:
             return []  # nothing is consumed, so all may run
@@ -283,7 +291,7 @@ class Holdings:
         ]
 
     def lose_group(self, activation: Activation, group: Group, reason: str, by: Activation | None = None) -> None:
-        """Make an activation give up its non-detached spikes of a group."""
+        """Make an activation give up the spikes of a group that it holds for non-detached needs."""
         needs: list[Need] = []
         for need in activation.clause.needs:
             spike = activation.spike(need)
@@ -292,7 +300,8 @@ class Holdings:
         self.lose(activation, needs, reason, by)
 
     def give_up(self, run: Activation, reason: str) -> None:
-        """Make all other activations of a run's rule give up the run's non-detached spikes for good."""
+        """Make all other activations of a run's rule give up, for good, the spikes that the run holds for non-detached
+        needs."""
         rule = run.clause.rule
         for spike in run.stands_on:  # refuse all spikes first: an activation that loses one spike takes another
             self.benches.unbench(spike)
@@ -305,8 +314,8 @@ class Holdings:
                     self.lose(other, [n for n in _of_spike(other, spike) if not n.detached], reason, run)
 
     def end(self, activation: Activation, reason: str = "", by: Activation | None = None) -> None:
-        """End an activation and remove every reference to it. With a `reason`, record in the trace each spike it gives
-        up."""
+        """End an activation and remove every reference to it. With a `reason`, record in the trace each spike that it
+        gives up."""
         state = self.state
         before = activation.state
         self._unhead(activation)
@@ -348,7 +357,7 @@ class Holdings:
     def _release(self, activation: Activation, need: Need, reason: str, by: Activation | None = None) -> None:
         """Make an activation give up the spike of a need; `by` is the run that is the cause, or None.
 
-        The spike's causal group becomes *dirty*: the activations that wait in it ask again (`Waits.wake`).
+        The spike's causal group becomes *dirty*: the activations that wait for a change in it ask again (`Waits.wake`).
         """
         state = self.state
         spike = activation.spike(need)

@@ -21,9 +21,9 @@ Each such search is a *derivation*. Its result is a *strength*:
                  limit (the rival's `patience`)
 ``NO``           nothing leads to the signal
 
-A rule that would take one of the rival's own slots cannot help the rival: in one group a slot is written once (L19).
-The *asking activation* (the one that wants to run, and for which the engine judges the rival) cannot help either; nor
-can an activation that waits for the asking one. These activations count as *inert*: doing nothing.
+A rule that would take one of the rival's own slots cannot help the rival: in one group, only one rule writes a slot
+(L19). The *asking activation* (the one that wants to run, and for which the engine judges the rival) cannot help
+either; nor can an activation that waits for the asking one. These activations count as *inert*: doing nothing.
 
 A chain of causes may be too long for recursion. So each step of a derivation is a generator, a `Step`, which yields the
 steps whose strengths it needs. `_solve` runs the steps, and keeps the waiting steps on a stack.
@@ -51,7 +51,8 @@ SURE: Final = 2
 
 SlotNumbers = frozenset[int]
 Place = tuple[int, Group, SlotNumbers]
-"""The goal of a derivation: a signal (its index), the group that may cause it, and slots that no helper may write."""
+"""The goal of a derivation: a signal (its index), the group that may cause it, and the indices of slots that no helping
+rule may write."""
 
 FINAL: Final = 1 << 60
 STALE: Final = -1
@@ -65,12 +66,12 @@ Step = Generator[Any, int, int]
 class Horizon:
     """The horizons of the engine's groups at one moment, for one asking activation.
 
-    A horizon changes no spike, group or activation.
+    A `Horizon` changes no spike, group or activation.
 
     Args:
         state: The state of the engine.
         inert: The activations that count as doing nothing: the asking activation, and the activations that wait for it.
-        stuck: More activations that count as doing nothing.
+        stuck: More activations that count as doing nothing, because they wait only for each other.
 
     Attributes:
         roots: The live activations on which the latest derivation with the result `SURE` rests.
@@ -78,7 +79,7 @@ class Horizon:
         hopes: The changes after which the results may differ. A key is a kind of change (`RULE`, `OUTSIDE` or `SEEN`,
             see ``activation.py``) and the index of a rule or signal. The value is a count. For `OUTSIDE`, the count is
             a limit. If one activation of a rule changes, and the rule has more than this many other activations, the
-            results stay the same. For other kinds, the count is 0.
+            results stay the same. For the other kinds, the count is 0.
         recheck: The time (seconds) at which the first of the spikes on which the results rest becomes too old.
     """
 
@@ -127,11 +128,11 @@ class Horizon:
         return any([activation in stuck for stuck in self.stuck])
 
     def judge(self, clause: Clause, activation: Activation | None, group: Group) -> tuple[int, tuple[Activation, ...]]:
-        """Return the strength with which a clause may become ready in a group, and the `roots` of the result `SURE`.
+        """Return the strength with which a clause may become ready in a group. For `SURE`, also return the `roots`.
 
         `activation` is None for the clause's activation on stand-by, which holds no spike yet (see ``activation.py``).
-        An activation may hold no spike of the group. It is then a rival in this group only if the group may yet raise a
-        signal that the activation lacks.
+        An activation without a spike of the group is a rival there only if the group may yet raise a signal that the
+        activation lacks.
         """
         self.roots.clear()
         strength = _solve(self._viable(clause, activation, group, clause.rule.slotset))
@@ -261,7 +262,8 @@ class Horizon:
         return strength or (SPECULATIVE if self._outside(need, group) else NO)
 
     def _guards(self, clause: Clause, group: Group, slots: SlotNumbers) -> Generator[Any, int, bool]:
-        """Return whether every slot predicate of a clause is true, or tests a slot that this group may yet change."""
+        """Return whether every slot predicate of a clause is true, or tests a slot that work in progress in this group
+        may change."""
         for slot, guard in clause.guards:
             if self.state.opens(slot, guard):
                 continue
@@ -362,7 +364,8 @@ class Horizon:
         return found
 
     def _is_far(self, signal: int, group: Group) -> bool:
-        """Return whether a live rule of another group might raise a signal. `hopes` records that this may change."""
+        """Return whether a live rule of another group might raise a signal. Record in `hopes` that the answer may
+        change."""
         causes = self.state.causes
         wide = causes.wide_ancestors(signal)
         if wide:
@@ -382,8 +385,8 @@ class Horizon:
     def _helpless(self, rule: int, group: Group, *, near: bool) -> int:
         """Count the activations of a rule that cannot help `group` from outside.
 
-        These are the inert activations and, if `near`, the members of `group`. `near` says that no detached effect lies
-        between the rule and the signal. Then members help from inside the group, not from outside.
+        These are the inert activations and, if `near`, the members of `group`. `near` says that no effect of a detached
+        rule lies between the rule and the signal. If so, members help from inside the group, not from outside.
         """
         if self._inert is None:
             self._inert = {}

@@ -1,9 +1,9 @@
-"""Leaders: when one activation is refused, the activations behind it need not ask in full.
+"""Leaders: when one activation is refused, the activations behind it need not examine every rival.
 
 An activation is *behind* another if its clause has less effective utility. Suppose that a thousand activations are
 ready to write one slot, and the group refuses the best one. The group would refuse all others too, because the best one
-is a rival of each. So only the best one, the *leader*, asks in full (``consent.py``). The others *follow*: they wait
-for the leader, and examine no other rival.
+is a rival of each. So only the best one, the *leader*, asks in full: it examines every rival (``consent.py``). The
+others *follow*: they wait for the leader, and examine no other rival.
 
 An activation cannot follow if the utility of a rival lies between the leader's and its own. The leader did not examine
 this rival. The activation must examine it: the rival may need pressure, or may lead to a further rival (law L16).
@@ -22,11 +22,12 @@ from ravestate.policy.model import Clause
 
 
 class Leader:
-    """A refused activation of one causal group.
+    """A refused activation that other activations follow. It asks only one causal group for consent.
 
     Attributes:
         activation: The activation.
-        next: The best rival behind the leader. Activations behind this rival cannot follow. None without such a rival.
+        next: The best rival behind the leader. Activations behind this rival cannot follow. None if no rival is behind
+            the leader.
         recovering: The rivals behind the leader whose rules are still in their cooldown. Their places in the order
             change.
     """
@@ -41,7 +42,8 @@ class Leader:
 
 
 class Leaders:
-    """The leaders of one round of consent; `found` maps a causal group and a set of slots to their leader."""
+    """The leaders of one round of consent (`Agenda.consent_round`); `found` maps a causal group and a set of slots to
+    their leader."""
 
     __slots__ = ("found", "state")
 

@@ -1,6 +1,6 @@
 """A line: a queue of activations in the order of their sort keys.
 
-Most activations join in one batch, or return to the front. So the heap of the queue is seldom needed.
+Most activations join in one batch, or join at the front. The others join a heap, which is seldom needed.
 """
 
 from __future__ import annotations
@@ -10,11 +10,11 @@ from typing import Any
 
 
 class Line:
-    """A queue of *places*: tuples that end with an activation. The least place is the first.
+    """A queue of *places*. A place is a tuple: a sort key, then the activation. The least place is the first.
 
     Attributes:
-        line: The places that joined ahead of all others, in reverse order. This list is empty only if the queue is
-            empty.
+        line: The places that joined at the front of the queue, in reverse order: the first place is at the end. This
+            list is empty only if the queue is empty.
     """
 
     __slots__ = ("_between", "line")

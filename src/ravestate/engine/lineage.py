@@ -12,8 +12,8 @@ class Loop:
 
     Attributes:
         instant: The number of the instant.
-        turns: How many of the runs were further turns of the loop (``loops.py``).
-        rules: The rules that had these further turns.
+        turns: How many of these runs were further *turns*: an earlier run of the same rule led to them (``loops.py``).
+        rules: The rules of the runs that were further turns.
     """
 
     __slots__ = ("instant", "rules", "turns")
@@ -25,7 +25,8 @@ class Loop:
 
 
 class Lineage(NamedTuple):
-    """The indices of the rules that led to a spike or run within an instant, and the `Loop` of the spike or run."""
+    """The indices of the rules that led to a spike or run within an instant, and the `Loop` to which the spike or run
+    belongs."""
 
     rules: frozenset[int]
     loop: Loop

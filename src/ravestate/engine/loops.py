@@ -41,7 +41,7 @@ class Loops:
     Attributes:
         runs: How many runs there have been in this instant.
         late: How many deferred turns ran in this instant after an error had named their loop.
-        deferred: The activations that wait until nothing else is ready, oldest first.
+        deferred: The activations that wait until nothing else is ready, in the order in which they were deferred.
     """
 
     __slots__ = ("_instant", "_memory", "_next", "_turns", "deferred", "late", "runs")
@@ -65,7 +65,8 @@ class Loops:
         self._instant += 1
 
     def defer(self, activation: Activation) -> bool:
-        """Defer a ready activation if it is a turn of a loop after `TURNS` turns. Return whether it is deferred."""
+        """Defer a ready activation if it is a further turn, and `TURNS` turns have run already. Return whether it is
+        deferred."""
         if self._turns < TURNS or activation is self._next:
             return False
         rule = activation.clause.rule.index
@@ -77,7 +78,7 @@ class Loops:
         return over
 
     def next(self) -> Activation | None:
-        """Remove the oldest deferred activation that is still ready, and return it; None if there is none."""
+        """Remove the first deferred activation that is still ready, and return it; None if there is none."""
         while self.deferred:
             activation = self.deferred.popleft()
             if activation.state == READY:
@@ -93,7 +94,8 @@ class Loops:
         return run.lineage
 
     def find(self, run: Activation) -> Sequence[RulePlan]:
-        """Record the lineage of a run that starts. If an error must name its loop now, return the loop's rules."""
+        """Record the lineage of a run that starts. If an error must name its loop now, return the loop's rules; else
+        return nothing."""
         lines = self._lines(run)
         if not lines:
             return ()  # `lineage` begins a loop if the run raises a spike

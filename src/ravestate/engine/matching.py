@@ -42,7 +42,8 @@ class Matching:
     # ------------------------------------------------------------------------------------ groups
 
     def parents(self, run: Activation | None) -> tuple[Spike, ...]:
-        """Return the parents of the spikes that a run raises; none for a detached rule or outside code (L19)."""
+        """Return the parents of the spikes that a run raises; none for a detached rule or code outside the rules
+        (L19)."""
         return () if run is None or run.clause.rule.detached else run.stands_on
 
     def new_group(self) -> Group:
@@ -86,9 +87,9 @@ class Matching:
     def _offer_again(self, group: Group) -> None:
         """Offer the spikes of a merged group again, oldest first.
 
-        Some needs of a clause may only hold spikes of one group (L12). Before the merge, this limit kept some of these
-        spikes apart. As at its birth, a spike is offered only to activations that are older than the spike, oldest
-        first.
+        Some needs of a clause may only hold spikes of one group (L12). Before the merge, this limit kept some spikes of
+        the two groups apart. As at its birth, a spike is offered only to activations that are older than the spike,
+        oldest first.
         """
         state, holdings = self.state, self.holdings
         offers: list[tuple[int, int, int, Activation, Spike]] = []
@@ -172,7 +173,8 @@ class Matching:
             self.entries.forget(spike)
 
     def _offer(self, need: Need, spike: Spike) -> None:
-        """Offer a new spike to every activation that lacks it, oldest first, then to the clause's stand-by."""
+        """Offer a new spike to every activation that lacks it, oldest first. Then create a new activation with the
+        spike (L12)."""
         state, holdings = self.state, self.holdings
         clause = need.clause
         rule = clause.rule
@@ -217,7 +219,8 @@ class Matching:
         holdings.update(activation)
 
     def _show(self, need: Need, spike: Spike) -> None:
-        """Give a new spike to the activations that look at its signal, in place of their older spike (L19)."""
+        """Give a spike to the activations of a detached need's clause, in place of the older spike that they look at
+        (L19)."""
         for activation in list(self.state.active.get(need.clause.rule.index, ())):
             if activation.clause is need.clause and activation.state < RUNNING and not activation.missing & need.bit:
                 held = activation.spike(need)
@@ -227,7 +230,7 @@ class Matching:
     def on_look(self, looking: tuple[Need, Spike]) -> None:
         """Show a spike to a detached need for which it is old enough now (L19)."""
         need, spike = looking
-        need = self.state.policy.clause_plans[need.clause.index].needs[need.index]  # adding a rule replaces all records
+        need = self.state.policy.clause_plans[need.clause.index].needs[need.index]  # a new rule replaces all records
         if self.state.fits(need, spike):
             self._show(need, spike)
 

@@ -54,11 +54,12 @@ class Memory:
         """Key: the index of a collection that was not read since its last change; value: its items, which a
         write may change without a copy."""
         self.ran: dict[int, float] = NOTHING
-        """Index of a rule with a cooldown → the end of its last run that fired (seconds)."""
+        """Index of a rule with a cooldown → the end (seconds) of its last run that *fired*: the run consumed its
+        spikes."""
         self.retired = NO_NUMBERS
         """The indices of the rules that have retired."""
         self.dropped: dict[str, int] = NOTHING
-        """Name of a signal → how many of its spikes were dropped because of its limit (L23)."""
+        """Name of a signal → how many of its spikes were dropped because of the signal's limit (L23)."""
         self.watched: dict[str, int] = {}
         """Key: the name of a signal whose spikes are reported as effects; the value is always 1."""
         self.blamed = NO_NUMBERS

@@ -1,9 +1,9 @@
 """The table of the outcomes of runs (laws L18, L20, L21).
 
-The key of a row has two words: the engine's reason to cancel the run (empty without a cancellation), and the end of the
-run's function. A row has two outcomes: one for a run that wrote no slot, and one for a run that wrote a slot. A run
-that *fired* consumes its spikes for its slots. After any other end its slots are free, and the next best rule may
-answer.
+The key of a row has two words: the engine's reason to cancel the run (empty without a cancellation), and the way in
+which the run's function ended. A row has two outcomes: one for a run that wrote no slot, and one for a run that wrote a
+slot. A run that *fired* consumes its spikes for the slots that it writes. After any other end, these slots are free,
+and the next best rule may answer.
 """
 
 from __future__ import annotations

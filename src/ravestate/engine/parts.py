@@ -66,7 +66,7 @@ class Parts:
             raise EngineError("the time is not a number of seconds: it is NaN")
 
     def advance(self, now: float) -> None:
-        """Let time pass until `now` (seconds), deadline by deadline. A repeated or early call changes nothing."""
+        """Let time pass until `now` (seconds), deadline by deadline. A time that has passed already changes nothing."""
         state = self.state
         entry = state.deadlines.pop(now)
         while entry is not None:
@@ -80,7 +80,7 @@ class Parts:
         """Return the effects to perform now. Call this again after performing them, until the list is empty."""
         state, agenda = self.state, self.agenda
         free = state.free
-        # Reports (of spikes, ends, failures) do not end the loop: only a run to start or cancel does.
+        # Reports (of spikes, ends, failures) do not end the loop: only an order to start or cancel a run does.
         while not state.acts:
             if state.faults:
                 state.report_faults()
@@ -159,7 +159,8 @@ class Parts:
         self.emit(event.signal, event.payload, event.run, event.origin)
 
     def on_wipe(self, event: events.Wipe) -> None:
-        """Withdraw the live spikes of a signal and all their descendants; cancel the runs that stand on them."""
+        """Withdraw the live spikes of a signal and all their descendants. Cancel the runs that hold one of them, except
+        the run that wipes and runs that cannot be cancelled."""
         signal = self._signal(event.signal)
         wiper = None if event.run is None else self._run(event.run)
         state = self.state
@@ -217,7 +218,7 @@ class Parts:
         self.holdings.update(activation)
 
     def on_look(self, time: float, looking: tuple[Need, Spike]) -> None:
-        """Show a spike to a detached need for which it is old enough now (L19)."""
+        """Show a spike to a detached need (a constraint that only looks) for which it is old enough now (L19)."""
         self.matching.on_look(looking)
 
     def on_recheck(self, time: float, activation: Activation) -> None:
@@ -231,11 +232,11 @@ class Parts:
         self.state.dirty[owner[0].root()] = None
 
     def on_expire(self, time: float, spike: Spike) -> None:
-        """Make incomplete holders give up a spike that is too old for them (L14)."""
+        """Make holders that are not ready yet give up a spike that is too old for them (L14)."""
         self.holdings.on_expire(time, spike)
 
     def on_forget(self, time: float, spike: Spike) -> None:
-        """Remove a spike that is too old for every detached need, if nothing holds it."""
+        """Remove a spike that is too old for every detached constraint, if nothing holds it."""
         if not (spike.is_held or spike.in_halves):
             self.holdings.entries.forget(spike)
 

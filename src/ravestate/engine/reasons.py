@@ -10,7 +10,7 @@ from typing import Any, Self
 
 
 def reason(*parts: str) -> Any:
-    """Return the value of a `Reason` member. Type checkers take a member made of a bare tuple for a tuple."""
+    """Return the value of a `Reason` member. Without this function, type checkers would take the member for a tuple."""
     return parts
 
 

@@ -71,6 +71,6 @@ class Roster(Generic[Member]):
         return sorted(found, key=self._places.__getitem__)
 
     def causers(self, slots: tuple[int, ...]) -> list[RulePlan]:
-        """Return those of the members' rules that may trigger a writer of one of the slots."""
+        """Return those of the members' rules that may trigger a rule that writes one of the slots."""
         found = dict.fromkeys([rule for slot in slots for rule in self._causers.get(slot, ())])
         return [self._causes.rules[rule] for rule in found]

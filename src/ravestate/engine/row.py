@@ -1,6 +1,7 @@
-"""A row: an index of the spikes that a half holds, so that each clause of the half finds its spikes fast.
+"""A row: an index of the spikes that a half holds. With it, each clause of the half finds its spikes fast.
 
-A *half* keeps the first spikes of clauses with two constraints, until the second spikes come (``halves.py``).
+A *half* keeps the first spikes of clauses with two constraints (their *needs*), until the second spikes come
+(``halves.py``).
 """
 
 from __future__ import annotations
@@ -31,7 +32,7 @@ class Row:
     def __init__(self, held: OrderedDict[Spike, int]) -> None:
         self._held = held
         self._spikes: list[Spike] = []
-        self._last = -1  # the number of the youngest spike in the row
+        self._last = -1  # the number that `held` gives to the youngest spike in the row
         self._starts: dict[Need, int] = {}
 
     def find(self, need: Need, state: State, *, all_: bool) -> list[Spike]:
@@ -49,7 +50,7 @@ class Row:
         return found
 
     def _catch_up(self) -> None:
-        """Add the half's new spikes to the row. Remove the spikes that have gone, if there are too many."""
+        """Add the half's new spikes to the row. If the row is too long, remove the spikes that the half gave up."""
         held = self._held
         new: list[Spike] = []
         for spike in reversed(held):

@@ -1,4 +1,4 @@
-"""Runs: a rule's function starts, is watched, and ends (laws L17, L18, L21)."""
+"""Runs: a rule's function starts, is watched for its `until` condition, and ends (laws L17, L18, L21)."""
 
 from __future__ import annotations
 
@@ -183,9 +183,9 @@ class Runs:
             del self.state.watches[watch.clause]
 
     def _consume(self, run: Activation) -> None:
-        """Settle a run as Done (L18): consume its slots in its groups.
+        """Settle a run that fired (L18): it takes its slots in its groups for good.
 
-        Other writers of these slots give up their spikes of these groups.
+        Other activations that write one of these slots give up their spikes of these groups.
         """
         state = self.state
         rule = run.clause.rule
@@ -216,10 +216,10 @@ class Runs:
             state.dirty[group] = None
 
     def _relinquish(self, run: Activation) -> None:
-        """Settle a run that resigned, or failed before a write (L18).
+        """Settle a run that did not fire (L18): it resigned, failed before a write, or was wiped before a write.
 
-        Free the run's slots, make its rule give up the run's spikes, and let the next alternative
-        (``conflict_sets.py``) ask.
+        Free the run's slots, and make its rule give up the run's spikes. If the run's clause competed with others for a
+        single spike, let the next of them ask (``conflict_sets.py``).
         """
         for group in _roots(run):
             for slot in run.clause.rule.slots:
@@ -234,9 +234,9 @@ class Runs:
 
 
 def _origin(run: Activation) -> Any:
-    """Return the origin of a run's youngest spike that has one.
+    """Return the origin of a run: the origin of its youngest spike that has an origin.
 
-    A spike of a detached need counts only if no other spike has an origin (L19).
+    A spike for a detached constraint counts only if no other spike has an origin (L19).
     """
     known = [spike for spike in run.stands_on if spike.origin is not None]
     looked = [spike for spike in run.spikes if spike is not None and spike.origin is not None]

@@ -27,7 +27,8 @@ class Slots:
         self.matching = matching
 
     def write(self, slot: SlotPlan, value: Any, run: Activation | None, origin: Any = None) -> None:
-        """Write a slot, for a run or outside code. An equal value changes nothing, unless the slot has `always`."""
+        """Write a slot, for a run or for code outside the rules. An equal value changes nothing, unless the slot has
+        `always`."""
         if slot.is_collection:
             self._replace(slot, value, run, origin)
             return

@@ -22,14 +22,16 @@ class Spike:
         before: The number of the youngest activation that is older than the spike.
         origin: The object that came from outside with the event that led to the spike, also through detached rules;
             None if there was no object.
-        lineage: The rules that led to the spike. Kept only in an instant with many runs (L23).
-        holder: One of the activations that hold the spike, or None. Most spikes never have a second holder, and need no
-            table.
-        expiring: The times at which incomplete holders give the spike up because of its age (seconds).
-        in_halves: How many halves hold the spike (``halves.py``). A half keeps first spikes for clauses that have no
-            activation yet.
-        parted: The indices of the clauses for which these halves do not hold the spike. Such a clause gave it up, or
-            has an activation that holds it.
+        lineage: The rules that led to the spike within the instant of its birth; None if that instant had few runs
+            (L23).
+        holder: One of the activations that hold the spike, or None. Most spikes never have a second holder, and so need
+            no table of holders.
+        expiring: The times (seconds) at which holders that are not ready yet give the spike up, because of its age.
+        in_halves: How many halves hold the spike, plus how many benches have it as their counterpart. A *half* keeps a
+            spike without an activation, until a second spike comes, the *counterpart* (``halves.py``). On a *bench*,
+            several spikes share one counterpart (``benches.py``).
+        parted: The indices of the clauses for which these halves do not hold the spike. Such a clause gave the spike up
+            or has retired, or an activation of the clause holds the spike.
         refused: The indices of the rules that gave the spike up for good.
     """
 

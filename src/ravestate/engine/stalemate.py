@@ -30,7 +30,7 @@ def stalemate(consent: Consent, refused: Iterable[Activation], known: Stuck | No
             if one in seen or not _hangs(one):
                 continue
             if any([waiting.isdisjoint(roots) for roots in _sure(one)]):
-                continue  # no activation that makes one rival ready, or rules it out, waits itself: so this wait will end
+                continue  # at least one rival depends on no waiting activation, so this wait will end
             seen.add(one)
             for roots in _sure(one):
                 reached += roots
@@ -52,7 +52,7 @@ def stalemate(consent: Consent, refused: Iterable[Activation], known: Stuck | No
             for (
                 _,
                 refusal,
-            ) in moved:  # this activation is refused even so: it waits for others, which may in turn wait for it
+            ) in moved:  # refused even if the stuck activations do nothing: it waits for others, which may wait for it
                 reached += [root for roots in refusal.sure for root in roots if root not in seen]
         if not any([_hangs(root) for root in reached]):
             return stuck

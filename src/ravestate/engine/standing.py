@@ -1,8 +1,9 @@
 """Standing: the order of clauses by effective utility, now and later (laws L9, L15).
 
-The effective utility of a clause is its utility x weight x recovery. After a run that fired, recovery climbs from 0 to
-1 over the rule's cooldown. If both utilities are 0, weight x recovery decides. If two clauses are equal, the one
-declared first is ahead. A *crossing* is a moment at which recovery changes the order of two clauses.
+The effective utility of a clause is its utility x its rule's weight x its rule's recovery. After a run that *fired*
+(consumed its spikes), recovery climbs from 0 to 1 over the rule's cooldown. If the effective utilities of two clauses
+are 0, weight x recovery decides. If the clauses are still equal, the one declared first is ahead. A *crossing* is a
+moment at which recovery changes the order of two clauses.
 """
 
 from __future__ import annotations
@@ -19,7 +20,8 @@ DIGITS = 9
 """The time of a crossing (seconds) is rounded to this many decimal places, so that events of one moment coincide."""
 
 INSTANT = 0.5e-9
-"""Moments that differ by less than this (seconds) are the same: half a unit of the last of these decimal places."""
+"""Moments that differ by less than this (seconds) are the same: this is half a unit of the last decimal place
+(`DIGITS`)."""
 
 
 class Standing:
@@ -102,5 +104,5 @@ class Standing:
 
 
 def lead(one: float, other: float) -> float:
-    """Return by how much a utility or a weight is greater than another; 0 if they count as equal."""
+    """Return by how much a utility or weight exceeds another, negative if it is smaller; 0 if they count as equal."""
     return 0.0 if abs(one - other) <= SAME * max(abs(one), abs(other)) else one - other

@@ -1,12 +1,14 @@
 """The state of an engine: its tables, and the questions that they answer. This file makes no decision.
 
 An event finds its spikes and activations without a search: live spikes by signal, activations by rule, and incomplete
-activations by the need that they lack. So the cost of an event does not grow with the number of rules.
+activations by the constraint for which they lack a spike. So the cost of an event does not grow with the number of
+rules.
 
-The tables use three words. A *need* is one constraint of a clause. A *half* keeps first spikes for clauses with two
-needs (``halves.py``). A *bench* is a table of first spikes that wait for the same second spike, or have it (``benches.py``).
+The tables use three words. A *need* is one constraint of a clause. A *half* keeps the first spikes of clauses with two
+needs, without activations, until a second spike comes (``halves.py``). A *bench* is a table of first spikes that wait
+for the same second spike, or share it already (``benches.py``).
 
-The parts of the engine share one state. Only `State.adopt` and these files change its tables:
+The parts of the engine share one state. Only `State.adopt` and these files change the state's tables:
 
 - `active`: ``holdings.py``
 - `lacking`: ``holdings.py``, ``matching.py`` and ``halves.py``; `gated`: ``holdings.py`` and ``slots.py``
@@ -124,9 +126,10 @@ class State(Memory):
         self.rows: dict[Half, Row] = NOTHING
         """Half whose spikes are slow to search → an index of these spikes (``row.py``)."""
         self.pools: dict[Half, Bench] = NOTHING
-        """Half with benches (``benches.py``) → the bench of its spikes in `halves`."""
+        """Half with benches (``benches.py``) → its bench whose spikes still lack a second spike; these spikes are in
+        `halves`."""
         self.benches: dict[Spike, dict[Half, Bench]] = NOTHING
-        """Counterpart (a spike) → half → the bench of this half that shares the counterpart."""
+        """Counterpart (a second spike) → half → the bench of this half whose spikes share the counterpart."""
         self.seats: dict[Half, dict[Spike, Bench]] = NOTHING
         """Half with benches → each spike that the half holds → the bench of the spike."""
         self.headless: dict[Spike, None] = NOTHING
@@ -134,7 +137,7 @@ class State(Memory):
         self.patience_ends: dict[Spike, dict[Half, list[tuple[int, float]]]] = NOTHING
         """Spike → half that holds the spike → pairs of a count and a time (seconds). A count n says that the
         first n clauses of the half, the best first, are under pressure. Earlier pairs have smaller counts. The time is
-        the end of the patience of those clauses that no earlier pair counts (law L16)."""
+        the end of the patience of those clauses that no earlier pair includes (law L16)."""
         self.gated: dict[Activation, None] = NOTHING
         """Activations that hold all their spikes, but have a slot predicate that is false."""
         self.free = Free()
@@ -146,9 +149,11 @@ class State(Memory):
         self.waiting: dict[Activation, None] = {}
         """Ready activations that were refused consent."""
         self.refused: dict[Activation, None] = {}
-        """The activations refused since the last search for a stalemate."""
+        """The activations refused since the last search for a *stalemate*: activations that wait only for each
+        other."""
         self.stuck: Stuck | None = None
-        """The activations that wait only for each other (``stalemate.py``); made on first use."""
+        """The activations that were found to wait only for each other (``stalemate.py``); None before the first of
+        them."""
         self.dirty: dict[Group, None] = {}
         """The groups that have changed: a run or a patience has ended, or a member has joined, changed or left. The
         activations whose refusals depend on these groups ask again (`Waits.wake`)."""
@@ -156,13 +161,14 @@ class State(Memory):
         """Hope → the waiting activations that have it. A hope is something outside an activation's groups that may lift
         the activation's refusal (``activation.py``)."""
         self.hope_counts: dict[tuple[int, int], int] = NOTHING
-        """Hope → the greatest count that a refusal of a waiting activation has for it (`Horizon.hopes`)."""
+        """Hope → the greatest of the counts that the refusals of the waiting activations have for this hope
+        (`Horizon.hopes`)."""
         self.stirred: dict[tuple[int, int], None] = NOTHING
-        """The hopes that have changed. The activations that have them ask again (`Waits.wake`)."""
+        """The hopes that have changed. The activations that have these hopes ask again (`Waits.wake`)."""
         self.alternatives: dict[Activation, tuple[tuple[Clause, ...], int, int]] = NOTHING
-        """Key: the present activation of a conflict set (``conflict_sets.py``). Value: the clauses of the
-        set, how many of them have had an activation, and a number *n*. Their activations get the numbers from *n* + 1
-        on."""
+        """Key: the present activation of a conflict set (clauses that compete for a spike, ``conflict_sets.py``).
+        Value: the clauses of the set, how many of them have had an activation, and a number *n*. Their activations get
+        the numbers from *n* + 1 on."""
         self.running: dict[int, Activation] = {}
         """Number of a run → the activation whose function runs."""
         self.standing = Standing(self.ran)
@@ -239,15 +245,15 @@ class State(Memory):
         return live is not None and spike in live
 
     def newest(self, need: Need) -> Spike | None:
-        """Return the newest live spike that fits a need, or None."""
+        """Return the newest live spike that fits a need; None if no spike fits."""
         for spike in reversed(self.live.get(need.signal.index, {})):
             if self.fits(need, spike):
                 return spike
         return None
 
     def fits(self, need: Need, spike: Spike) -> bool:
-        """Return whether a live spike may meet a need: age and payload fit, and the rule has not given it up for
-        good."""
+        """Return whether a live spike may meet a need: its age and payload fit, and the need's rule may still take
+        it."""
         rule = need.clause.rule
         if spike.born + need.max_age <= self.now and (need.max_age or spike.born < self.now):
             return False
@@ -265,7 +271,7 @@ class State(Memory):
         return [half for half in spike.signal.halves if self.entries(half, spike)] if spike.in_halves else ()
 
     def entries(self, half: Half, spike: Spike) -> OrderedDict[Spike, int] | None:
-        """Return the table in which a half holds a spike, or None."""
+        """Return the table in which a half holds a spike; None if the half does not hold the spike."""
         if half.sole:
             bench = self.bench_of(half, spike)
             return None if bench is None else bench.spikes
@@ -273,12 +279,12 @@ class State(Memory):
         return held if held is not None and spike in held else None
 
     def bench_of(self, half: Half, spike: Spike) -> Bench | None:
-        """Return the bench on which a half holds a spike, or None."""
+        """Return the bench on which a half holds a spike; None if there is no such bench."""
         seats = self.seats.get(half)
         return None if seats is None else seats.get(spike)
 
     def keeps(self, need: Need, spike: Spike) -> bool:
-        """Return whether a half holds a spike for one of its clauses, that of `need`."""
+        """Return whether the half of `need` holds a spike for the need's clause."""
         held = self.entries(need.half, spike) if need.half is not None else None
         return held is not None and not (spike.parted and need.clause.index in spike.parted)
 
@@ -291,7 +297,8 @@ class State(Memory):
         return held[spike] + half.places[need.clause.rule.index] + 1
 
     def stand_in(self, need: Need, spike: Spike) -> Activation:
-        """Return an activation like the one that the need's half would make of a spike. No table has it."""
+        """Return an activation like the one that the need's half would make of a spike. No table of the engine contains
+        it."""
         activation = Activation(self.entry_number(need, spike), need.clause)
         activation.put(need, spike)
         activation.missing &= ~need.bit
@@ -343,7 +350,8 @@ class State(Memory):
             return False
 
     def _note_fault(self, clause: Clause, predicate: Any, exception: Exception) -> None:
-        """Keep a predicate's fault for `report_faults`, with the first declared clause that has it."""
+        """Keep a predicate's exception for `report_faults`. If several clauses have the predicate, keep the clause
+        declared first."""
         if self.faults is NOTHING:
             self.faults = {}
         known = self.faults.get(id(predicate))
@@ -354,7 +362,7 @@ class State(Memory):
             self.faults[id(predicate)] = clause, predicate, exception
 
     def accepts(self, need: Need, payload: Any) -> bool:
-        """Return whether all predicates of a need accept a payload. After the first refusal, no more are called."""
+        """Return whether all predicates of a need accept a payload. After one that refuses it, no more are called."""
         for predicate in need.predicates:
             if not self.test(predicate, payload, need.clause):
                 return False

@@ -8,7 +8,10 @@ from ravestate.engine.activation import Activation
 
 
 class Stuck:
-    """A set of activations in a fixed order; `counts` has the number of members of each rule, by the rule's index."""
+    """A set of activations, in the order in which they joined.
+
+    `counts`: index of a rule → how many members are activations of this rule.
+    """
 
     __slots__ = ("_members", "counts")
 

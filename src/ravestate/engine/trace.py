@@ -103,7 +103,7 @@ class Passed:
 
 @dataclass(frozen=True, slots=True)
 class Waits:
-    """A ready activation waits for the rules ``for_``: rivals, or runs that hold a slot (L15).
+    """A ready activation waits for the rules ``for_``: those of rivals, and those of runs that have taken a slot (L15).
 
     The wait ends at ``until`` at the latest, because the patience of the rivals ends then. Without such a limit,
     ``until`` is None.
@@ -118,7 +118,10 @@ class Waits:
 
 @dataclass(frozen=True, slots=True)
 class Pressed:
-    """The rival ``rule`` is under pressure, because ``by`` waits for it; its patience ends at ``until`` (L16)."""
+    """The rival ``rule`` is under pressure: the rule ``by`` waits for it (L16).
+
+    The rival lacks the signals ``lacks``. Its patience ends at ``until``.
+    """
 
     time: float
     rule: str
@@ -154,7 +157,10 @@ class Told:
 
 @dataclass(frozen=True, slots=True)
 class Settled:
-    """The run of the activation ``run`` has ended; ``outcome`` is an `Outcome` (L18)."""
+    """The run of the activation ``run`` has ended; ``outcome`` is an `Outcome` (L18).
+
+    ``fired`` says whether the run consumed its spikes.
+    """
 
     time: float
     run: int

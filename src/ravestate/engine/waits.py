@@ -1,14 +1,15 @@
 """Waiting: the changes after which an activation that was refused consent asks again (laws L15, L16).
 
-Each waiting activation keeps the reasons for its wait, a `Refusal`. It asks again when one of these changes:
+Each waiting activation keeps the reasons for its wait, a `Refusal`. It asks again when one of the following things
+changes:
 
 - a causal group on which the refusal depends (`Refusal.interests`)
 - a *hope*: something outside these groups that may lift the refusal, such as a live rule of another group
   (``activation.py``)
 
-It also asks again at its recheck time, and when its rule or a rival begins a cooldown. All waiting activations ask
-again when the rules change, or when a slot with predicates changes. When an activation changes, `Waits.stir_rule` finds
-the hopes that depend on the activation's rule.
+It also asks again at the time `Refusal.recheck`, and when its own rule or a rival's rule begins a cooldown. All waiting
+activations ask again when the rules change, or when a slot with predicates changes. When an activation changes,
+`Waits.stir_rule` finds the hopes that depend on the activation's rule.
 """
 
 from __future__ import annotations
@@ -52,13 +53,18 @@ class Waits:
                 self.tell_followers()
 
     def tell_followers(self) -> None:
-        """Record in the trace which rules followers (``leaders.py``) wait for, when their leaders' waits changed."""
+        """Record in the trace which rules the *followers* wait for, after the waits of their leaders have changed.
+
+        A follower is an activation that waits for a better one, its leader, and examines no other rival
+        (``leaders.py``).
+        """
         for other in self.state.waiting:
             if other.refusal is not None and other.refusal.leader is not None:
                 self._tell(other, other.refusal)
 
     def _tell(self, activation: Activation, refusal: Refusal) -> bool:
-        """Record a refusal's names in the trace, unless the trace has them already. Return whether they are new."""
+        """Record in the trace the rules that a refusal names, unless the trace has them already. Return whether they
+        are new."""
         state = self.state
         names = tuple(refusal.all_names)
         if names == refusal.told or state.tracer is None:
@@ -97,7 +103,8 @@ class Waits:
             self.stir_rule(activation.clause.rule)
 
     def stir_rule(self, rule: RulePlan) -> None:
-        """Record that an activation of a rule began, changed or ended. Activations that hope for the rule ask again."""
+        """Record that an activation of a rule began, changed or ended. Activations whose hopes depend on the rule ask
+        again."""
         state = self.state
         others = len(state.active.get(rule.index, ())) - 1
         for hope in state.hoping:
@@ -113,8 +120,10 @@ class Waits:
                 state.stirred[hope] = None
 
     def stir_half(self, half: Half) -> None:
-        """Record that a half (``halves.py``) has taken a spike. Activations that hope for one of the half's rules ask
-        again."""
+        """Record that a half has taken a spike. Activations whose hopes depend on one of the half's rules ask again.
+
+        A half keeps a spike without an activation, until a second spike comes (``halves.py``).
+        """
         state = self.state
         for hope in state.hoping:
             if hope[0] == RULE and hope[1] in half.places:
@@ -135,14 +144,17 @@ class Waits:
         return asking
 
     def pass_time(self) -> None:
-        """Make the next search for a stalemate begin with all stuck activations: time may change their reasons."""
+        """Let the next search for a stalemate begin with all activations that wait only for each other (`State.stuck`).
+
+        Time may change the reasons of their waits.
+        """
         if self.state.stuck:
             self.state.refused.update(dict.fromkeys(self.state.stuck))
             self.state.stuck.clear()
 
 
 def patience_of_rivals(state: State, activation: Activation) -> float | None:
-    """Return when the patience of the last rival of a waiting activation ends (seconds); None without pressure."""
+    """Return the latest time (seconds) at which the patience of an activation's rivals ends; None without pressure."""
     names = activation.refusal.names if activation.refusal is not None else ()
     clauses = state.policy.clause_plans
     times: list[float] = []

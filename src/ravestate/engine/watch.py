@@ -8,7 +8,9 @@ from ravestate.policy.model import Clause
 
 
 class Watch:
-    """One clause of an `until` condition, and the spikes that meet it. All these spikes were born after the run began.
+    """One clause of a run's `until` condition, and the spikes that meet its constraints so far.
+
+    All these spikes were born after the run began.
 
     `due` is the time (seconds) at which all spikes will be old enough; `NEVER` while no such time is set.
     """
