@@ -1,8 +1,8 @@
 """The compiled build. ``tools/native.py`` compiles the Python files whose code handles every event.
 
 The compiled files are in ``native``, which has a folder for each interpreter and platform. `prefer` makes a package
-import the compiled files in that folder instead of their sources. The file ``stamp`` in the folder has the checksum
-that the sources had when they were compiled. If the sources have changed since, or if the environment variable
+import the compiled files for this interpreter instead of their sources. The file ``stamp`` beside these files has the
+checksum that the sources had when they were compiled. If the sources have changed since, or if the environment variable
 ``RAVESTATE_PURE`` is not empty, the sources run as pure Python.
 """
 
@@ -53,6 +53,6 @@ def build() -> str:
 
 
 def prefer(path: MutableSequence[str]) -> None:
-    """Put the compiled files of a package before its sources; `path` is the package's ``__path__``."""
+    """If the compiled build runs, make a package import its compiled files. `path` is the package's ``__path__``."""
     if build() == COMPILED:
         path.insert(0, os.path.join(PLACE, os.path.basename(path[0])))

@@ -224,7 +224,9 @@ def _kinds(annotation: Any) -> Iterator[Any]:
 
 
 def _takes(model: type[pydantic.BaseModel], field: str, value: Any) -> bool:
-    """Return whether the field takes the value. Validators of the whole model do not run: other values may be missing.
+    """Return whether the field takes the value.
+
+    Validators of the whole model do not run, because the values of other fields may be missing.
 
     If a validator of the field fails with an exception that is no validation error, the type alone decides.
     """

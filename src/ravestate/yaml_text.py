@@ -3,7 +3,7 @@
 Errors name the file and, where possible, the line. A few lines of aliases can stand for billions of values ("billion
 laughs"), and deep nesting exhausts the stack. The loaders here refuse both immediately. If a mapping has a key twice,
 PyYAML would silently drop the first value. Keys such as ``1`` and ``0x1`` are equal for `load_yaml`; for
-`compose_yaml`, they are two texts.
+`compose_yaml`, they are two different texts.
 """
 
 from __future__ import annotations
@@ -109,7 +109,10 @@ class _Bounded(Composer):
 
 class _Values(SafeConstructor):
     def construct_number(self, node: yaml.ScalarNode) -> Any:
-        """Return the number in a node. Refuse a long number: one in base 60 (``59:59:...``) takes minutes to read."""
+        """Return the number in a node. Refuse a long number, because PyYAML may need minutes to read it.
+
+        An example is a long number in base 60: ``59:59:...``.
+        """
         if len(node.value) > DIGITS:
             raise yaml.constructor.ConstructorError(
                 None, None, f"a number of more than {DIGITS} digits", node.start_mark

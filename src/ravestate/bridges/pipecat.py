@@ -37,9 +37,9 @@ except ImportError as error:
 class RavestateProcessor(FrameProcessor):
     """A processor that answers with a Ravestate agent instead of a language model.
 
-    It takes the user's words from a user aggregator's `LLMContextFrame`. Without an aggregator, it takes them from each
-    `TranscriptionFrame`. It pushes each utterance of the agent, an answer or not, as the frames of a language model's
-    response.
+    It takes the user's words from the `LLMContextFrame` of a user aggregator, Pipecat's collector of the user's words.
+    Without an aggregator, it takes them from each `TranscriptionFrame`. It pushes each utterance of the agent, an
+    answer or not, as the frames of a language model's response.
 
     Args:
         agent: The agent; see `AnyAgent`.
@@ -137,7 +137,7 @@ class RavestateProcessor(FrameProcessor):
             role = message["role"]
             if message is self._taken or (role != "user" and (words or role != "assistant")):
                 break
-            if role == "user":  # in the list, an earlier message of the agent may follow the user's message
+            if role == "user":  # in the list, the agent's previous message may come after the user's message
                 content = message["content"]
                 newest = newest if words else message
                 words.insert(0, content if isinstance(content, str) else _text_in(content))

@@ -158,7 +158,7 @@ class Conversation:
     def hear(self, text: str) -> None:
         """Tell the agent what the user has said."""
         if text.strip():
-            if self._growing is not None and self._growing.ended:  # the rule of an interrupted utterance is cancelled
+            if self._growing is not None and self._growing.ended:  # it was interrupted, and its rule cancelled
                 self._growing = None
             self.context.put(rawio.input, text)
 
@@ -236,7 +236,7 @@ class Conversation:
 
     async def _follow(self, utterance: Utterance) -> None:
         """End a growing utterance as soon as no rule can add to it, even if a rule has failed in the middle of it."""
-        with contextlib.suppress(RavestateError):  # `until_agent_leaves` raises this error of the engine
+        with contextlib.suppress(RavestateError):  # if the engine has failed, `until_agent_leaves` raises the error
             await self.context.quiet(rawio.output)
         if self._growing is utterance:
             self._fall_silent()

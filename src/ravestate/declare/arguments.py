@@ -22,7 +22,7 @@ R = TypeVar("R")
 
 
 def keywords(*options: str) -> Callable[[Callable[P, R]], Callable[P, R]]:
-    """Return a decorator that makes a method refuse an unknown keyword; the message names the nearest known keyword.
+    """Return a decorator that makes a method refuse an unknown keyword; the message names the most similar known one.
 
     `options` are keywords that the method accepts in addition to those in its signature.
     """

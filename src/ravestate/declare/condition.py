@@ -69,12 +69,15 @@ class Constraint(Condition):
     def max_age(self, seconds: Number | None) -> Constraint:
         """Give up a spike when it is older than `seconds`. With ``None``, there is no limit. The default is 5 s.
 
-        A rule that is ready and waits for consent keeps its spikes, whatever their age (L14).
+        A rule that is ready, but still waits to run, keeps its spikes, whatever their age (L14).
         """
         return replace(self, max_age_=None if seconds is None else _age(seconds, "max_age"))
 
     def detached(self) -> Constraint:
-        """Look at the spike: do not consume it, do not ask its group for consent, and do not join its group (L19)."""
+        """Let the rule look at the spike without consuming it.
+
+        The rule does not wait for other rules because of this spike, and does not join the spike's causal group (L19).
+        """
         return replace(self, is_detached=True)
 
     def where(self, predicate: Predicate) -> Constraint:

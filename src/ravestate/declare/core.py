@@ -30,4 +30,4 @@ activity = core.flag("activity", input=True, keep="latest")
 """True while some activation of a foreground rule holds a spike or runs."""
 
 pressure = core.flag("pressure", input=True, keep="latest")
-"""True while some ready activation has to wait for consent."""
+"""True while some ready activation has to wait before it may run."""

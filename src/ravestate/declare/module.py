@@ -143,7 +143,10 @@ class Module:
 
     @keywords(*SignalOptions.__annotations__)
     def collection(self, name: str, **options: Unpack[SignalOptions]) -> Collection[Any]:
-        """Declare keyed items with the signals ``.added``, ``.removed``, ``.changed``. Options: see `SignalOptions`."""
+        """Declare a slot that maps keys to items, with the signals ``.added``, ``.removed`` and ``.changed``.
+
+        Options: see `SignalOptions`.
+        """
         qualified = self._qualified("collection", name, options)
         collection: Collection[Any] = Collection(qualified, origin=place_of_call(), **options)
         self.slots.append(collection)
@@ -184,8 +187,8 @@ class Module:
             weight: A factor above 0 that multiplies the utility (L9).
             cooldown: When the rule has fired, its utility takes this many seconds to recover from 0 (L9). A run that
                 resigned does not count.
-            patience: If this rule still lacks an input, or a spike of another causal group, other rules wait at
-                most this many seconds for it (L16). The default is the context's patience.
+            patience: While this rule lacks an input or a spike of another causal group, other rules wait for this rule,
+                at most this many seconds (L16). The default is the context's patience.
             until: A condition that interrupts a run when new spikes meet it (L21).
             timeout: The maximum duration of a run in seconds, after which it fails (L18); no limit by default.
             detached: Whether the rule's effects begin new causal groups (L19).

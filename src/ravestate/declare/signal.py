@@ -12,7 +12,7 @@ T = TypeVar("T")
 
 Keep = Literal["all", "latest"]
 """The effect of a new spike on the older live spikes of its signal: ``"all"`` keeps them, up to a limit. ``"latest"``
-withdraws them (L20, L23)."""
+withdraws them (L20, L23). A spike is live while a rule holds it or may still look at it."""
 
 DEFAULT_LIMIT = 100_000  # the default of a signal's `limit`: its maximum number of live spikes
 

@@ -97,15 +97,16 @@ class AgentSpec:
         return [(name, path.parent) for name in cast("list[str]", modules)]
 
     def load(self, names: Iterable[tuple[str, Path]]) -> None:
-        """Load modules. Then move the settings from files to `settings`, unless an environment variable overrides them.
+        """Load modules. Then move each setting from a file to `settings`, unless an environment variable overrides it.
 
-        The loaded modules say which settings are paths: a relative path is relative to the folder of its file.
+        The loaded modules say which settings are paths. A relative path is relative to the folder of the file that
+        gives it.
 
         Args:
             names: The names of modules. If a name is a relative path, it is relative to the folder given with it.
 
         Raises:
-            UsageError: A module cannot be loaded. If there are `faults` already, the message becomes one of them.
+            UsageError: A module cannot be loaded. If there are `faults` already, the message is added to them instead.
         """
         for name, folder in names:
             try:

@@ -1,11 +1,11 @@
 """The static graph of causes between signals (law L7), and its closures.
 
-An edge leads from a signal, through a rule that hears it, to a signal that the rule raises. No edge leads through a
-detached rule, because its effects have no causes. Nor does an edge lead through a detached constraint. The closure of a
-signal holds the signal itself and all signals from which a path of edges leads to it.
+An edge leads from a signal, through a rule whose condition names it, to a signal that the rule raises. No edge leads
+through a detached rule, because its effects have no causes. Nor does an edge lead through a detached constraint. The
+closure of a signal holds the signal itself and all signals from which a path of edges leads to it.
 
-A closure is an integer with bit *n* for signal *n*. A closure over a thousand signals takes about a hundred bytes, and
-intersecting two closures is fast.
+A closure is stored as an integer, in which bit *n* stands for signal *n*. A closure over a thousand signals takes about
+a hundred bytes, and intersecting two closures is fast.
 """
 
 from __future__ import annotations
@@ -19,6 +19,8 @@ from ravestate.policy.model import Clause, Need, RulePlan, SignalPlan
 
 class Causes:
     """The causes and closures of one policy. The closures are computed at their first use.
+
+    Signals are given by their indices.
 
     Attributes:
         causes: Signal → the non-detached rules that may raise it.
@@ -55,7 +57,7 @@ class Causes:
         self._helpful: frozenset[int] | None = None
 
     def roots(self, signal: int) -> int:
-        """Return the roots of a signal's pathways, as bits. Roots have numbers of their own.
+        """Return the roots of a signal's pathways, as bits: bit *n* stands for root *n*, not for signal *n*.
 
         A root is a signal without causes, or a cycle without causes outside the cycle. The pathways of two signals have
         a signal in common if and only if the two signals share a root.
@@ -65,8 +67,8 @@ class Causes:
     def parts(self, clause: Clause) -> frozenset[int]:
         """Return the numbers of the *parts* of the policy from which a clause may take spikes.
 
-        A part is a set of roots. Two roots are in one part if their spikes may share a causal group: one run may hear
-        both, or one write of a slot may raise both (L11, L12).
+        A part is a set of roots. Two roots are in one part if spikes that stem from them may share a causal group: one
+        run may take spikes of both, or one write of a slot may raise both (L11, L12).
         """
         if self._parts is None:
             self._parts = self._find_parts()
@@ -179,7 +181,7 @@ class Causes:
 
     @property
     def helpful(self) -> frozenset[int]:
-        """The signals from which a chain of effects leads to a rule that writes a slot, or to a slot predicate."""
+        """The signals from which a chain of effects leads to a rule that writes a slot, or to a predicate on a slot."""
         if self._helpful is None:
             self._helpful = self._find_helpful()
         return self._helpful
@@ -197,9 +199,10 @@ class Causes:
         return frozenset(found)
 
     def downstream(self, rule: RulePlan) -> tuple[Clause, ...]:
-        """Return the clauses for which effects of `rule` may raise a spike in the same group, the best first.
+        """Return the clauses that may take a spike that `rule` causes, directly or through other rules.
 
-        Only clauses of rules that write a slot count.
+        The spike must be in the causal group of `rule`'s run, and the clause's rule must write a slot. The clause with
+        the greatest base utility comes first.
         """
         found = self._downstream.get(rule.index)
         if found is None:
@@ -231,7 +234,10 @@ class Causes:
 
     @property
     def contested(self) -> frozenset[int]:
-        """The slots whose writes a search along a chain of effects must note: a group allows one write of a slot (L19).
+        """The slots whose writes a search along a chain of effects must note.
+
+        Such a search looks for a chain that writes each slot at most once, because a causal group allows no second
+        write (L19).
 
         A slot that several rules write is contested. If only one rule writes a slot, a chain that writes the slot twice
         visits this rule twice. Within one group, the chain can leave out the part between the two visits, and still
@@ -262,7 +268,7 @@ class Causes:
         )
 
     def grounded(self, given: Iterable[int]) -> frozenset[int]:
-        """Return the signals that can ever occur if those in `given` can occur: a least fixed point over all rules."""
+        """Return the signals that can ever occur if the signals in `given` can: a least fixed point over all rules."""
         reached = set(given)
         lacking = {clause: {n.signal.index for n in clause.needs} - reached for r in self.rules for clause in r.clauses}
         waiting: dict[int, list[Clause]] = {}
@@ -292,6 +298,6 @@ def _firm(clause: Clause) -> list[int]:
 
 
 def _watched(rule: RulePlan) -> list[int]:
-    """Return the signals on which a rule depends: those that it hears, and those of the slots in its predicates."""
+    """Return the signals in a rule's constraints, and the signals of the slots in its predicates."""
     slots = [slot for clause in rule.clauses for slot, _ in clause.guards]
     return [need.signal.index for need in _needs(rule)] + [signal.index for slot in slots for signal in slot.signals]

@@ -18,7 +18,7 @@ Atoms = tuple[Constraint | Holds, ...]
 
 @dataclass(frozen=True, slots=True)
 class Conjunction:
-    """A conjunction of constraints on signals and predicates on slots; the predicates are its guards."""
+    """A conjunction: constraints on signals, and guards, which are predicates on slots."""
 
     constraints: tuple[Constraint, ...]
     guards: tuple[Holds, ...]

@@ -19,7 +19,7 @@ from ravestate.policy.components import components
 from ravestate.policy.model import RulePlan, SignalPlan
 
 UNIT = 1 << 60
-"""Units per nat. Information is stored as a whole number of units, so summation order does not matter."""
+"""Units per nat. Information is stored as a whole number of units, so the order of a sum does not matter."""
 
 
 class Completion:

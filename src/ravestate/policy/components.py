@@ -8,7 +8,7 @@ from dataclasses import dataclass
 
 @dataclass(frozen=True, slots=True)
 class Components:
-    """The strongly connected components of a graph: the members of each component, and each node's component number.
+    """The strongly connected components of a graph: the members of each component, and each node's component index.
 
     If an edge leads from component A to component B, B comes before A.
     """

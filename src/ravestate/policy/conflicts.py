@@ -78,7 +78,8 @@ class Conflicts:
         return found
 
     def best(self, first: RulePlan, second: RulePlan) -> tuple[Clause, Clause] | None:
-        """Return each rule's best clause among those that share a root with the other rule.
+        """For each rule, look at the clauses that share a root with the other rule, and return the one with the
+        greatest base utility.
 
         If the rules do not conflict, return None instead of the pair.
         """

@@ -67,9 +67,10 @@ def find_kin(rules: Iterable[RulePlan], causes: Causes) -> None:
 
 
 def find_unrivalled(rules: Iterable[RulePlan]) -> None:
-    """Mark the clauses that always go before all other clauses that write one of their slots.
+    """Mark each clause that always goes before all other clauses that write one of its slots.
 
-    The utility of a rule with a cooldown changes over time. So no clause that writes a slot of this rule is marked.
+    The utility of a rule with a cooldown changes over time. So a clause is not marked if it writes a slot that such a
+    rule writes.
     """
     best: dict[int, Clause] = {}
     changing: set[int] = set()
@@ -87,7 +88,7 @@ def find_unrivalled(rules: Iterable[RulePlan]) -> None:
 
 
 def find_conflict_sets(signals: Sequence[SignalPlan], causes: Causes) -> None:
-    """Set the conflict sets of each signal: the clauses that compete for each of its spikes, in a fixed order.
+    """Set the conflict sets of each signal. The clauses of a conflict set compete for each spike of the signal.
 
     One spike of the signal makes such a clause ready. The clauses write the same slots, and their order never changes.
     So the first clause goes before the others. The engine needs an activation of the next clause only if the run of
@@ -133,7 +134,10 @@ def find_halves(signals: Sequence[SignalPlan], causes: Causes) -> None:
 
 
 def _best_writers(causes: Causes) -> dict[tuple[int, int], Clause]:
-    """Return the best clause that writes a slot, for each pair of a slot and a part of the policy (`Causes.parts`)."""
+    """Return the best clause that writes a slot, for each pair of a slot and a part of the policy.
+
+    A part is a set of signals whose spikes may share a causal group (`Causes.parts`).
+    """
     best: dict[tuple[int, int], Clause] = {}
     for rule in causes.rules:
         for clause in rule.clauses if rule.slots else ():

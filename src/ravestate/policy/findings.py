@@ -219,7 +219,8 @@ def _covers(winner: Clause, loser: Clause) -> bool:
 
 def _ties(policy: Plans) -> Iterator[Finding]:
     conflicts = Conflicts(policy)
-    # Only rules with the same slot, root signal and base utility can tie.
+    # Two rules can tie only if they share a slot, a root and a base utility. A root is a signal or a cycle of signals
+    # at which the causes of a rule begin.
     peers: dict[tuple[int, int, float], list[RulePlan]] = {}
     for second in policy.rule_plans:
         keys = {

@@ -1,18 +1,18 @@
 """The least pathway of a clause (law L9): the pathway with the least information.
 
-An *alternative* of a signal is a set of signals that together may cause it. A pathway is a set that holds an
-alternative of each of its signals. The *cost* of a set is its information. A set of signals is an integer with one bit
-for each signal; `Completion` gives each signal its *place*, the number of this bit.
+An *alternative* of a signal is a set of signals that together may cause it; an input also has the empty alternative. A
+pathway is a set that holds an alternative of each of its signals. The *cost* of a set is its information. A set of
+signals is an integer with one bit for each signal; `Completion` gives each signal its *place*, the number of this bit.
 
-The search begins with the clause's own signals. Among the signals that lack an alternative, each step takes the signal
-with the highest bit, and tries each alternative of this signal. If two sets agree in all signals that further steps can
-reach, these steps are the same for both. So the search follows only the cheaper set, and independent choices do not
-multiply. The search for a signal uses the least pathways of its causes. If the causes form a chain, a ring or a tree,
-the search takes one or two steps.
+The search begins with the set of the clause's own signals. Each step extends the sets of the previous step. In each
+set, it takes the signal with the highest bit that still lacks an alternative, and tries each alternative of this
+signal. If two sets agree in all signals that further steps can reach, these steps are the same for both. So the search
+follows only the cheaper set, and independent choices do not multiply. The search for a signal uses the least pathways
+of its causes. If the causes form a chain, a ring or a tree, the search takes one or two steps.
 
 If alternatives have causes in common, the search is a weighted set cover problem, for which no quick method is known.
-If a step leaves too many sets, the search follows only the cheapest sets, and the result may be too high. That happens
-only if dozens of choices depend on each other; the size of the policy does not matter.
+If a step leaves too many sets, the search follows only the cheapest sets, and the cost that it finds may be too high.
+That happens only if dozens of choices depend on each other; the size of the policy does not matter.
 """
 
 from __future__ import annotations
@@ -25,7 +25,7 @@ from ravestate.policy.components import components
 EFFORT = 100_000
 """The number of sets that all searches of a policy together may examine, beyond the first `FREE` sets of each search.
 
-Each search may use a tenth of the sets that are left. It divides this tenth among its steps.
+Each search may examine a tenth of the number that is left, and divides this tenth among its steps.
 """
 
 FREE = 100  # each search may examine this many sets, whatever is left of `EFFORT`
@@ -38,7 +38,7 @@ class Least:
         self.completion = completion
         self._effort = EFFORT
         self._open = 0
-        """The set of *open* signals: those with several alternatives, and without the empty one."""
+        """The set of *open* signals: those with several alternatives, none of which is empty."""
         self._whole = [1 << place for place in range(len(completion.bare))]
         """Signal → the set of the signal and all causes that follow without a choice between alternatives."""
         self._price = completion.information[:]
@@ -48,7 +48,7 @@ class Least:
         self._masks: dict[int, list[int]] = {}
         """Open signal → its alternatives as sets."""
         self._known: dict[int, tuple[int, int]] = {}
-        """Set of signals that further steps may reach → the cost of its completion, and the signals added."""
+        """Open signal, as a set → the cost of the other signals of its least pathway, and the set of these signals."""
         self._follow()
         for members in completion.components:
             self._settle([place for place in members if not completion.bare[place]])
@@ -156,10 +156,9 @@ class Least:
         return reach
 
     def _lacking(self, lacking: int, before: int, found: int) -> int:
-        """Return the open signals of the set `found` that lack an alternative there.
+        """Return the open signals in the set `found` none of whose alternatives is a subset of `found`.
 
-        `before` is the set before the last addition. `lacking` has the signals of `before` that may lack an
-        alternative.
+        `before` is the set before the last addition. `lacking` has the signals of `before` for which this may be true.
         """
         new = found & ~before
         left = lacking | new & self._open

@@ -1,8 +1,8 @@
 """The records of a policy: the numbered form of what a designer declares.
 
-The compiler gives each signal, slot, rule and clause an index, in declaration order, and fills in the records. Nothing
-changes the records afterwards, so any number of engines share them. A signal's record lists its listeners: the needs
-(constraints of clauses) that hear it. So the cost of a spike depends only on the rules that hear its signal.
+The compiler gives each signal, slot, rule and clause an index, in declaration order, and fills in the records. After
+that, nothing changes the records, so any number of engines share them. A signal's record lists its listeners: the needs
+(constraints of clauses) that take its spikes. So the cost of a spike depends only on the listeners of its signal.
 
 The *best* of several clauses has the greatest `Clause.base`. Among equals, the clause declared first is the best.
 """
@@ -50,15 +50,17 @@ class SignalPlan:
     listeners: tuple[Need, ...] = ()
     """The needs for this signal in conditions of rules, in declaration order."""
     others: tuple[Need, ...] = ()
-    """The other listeners: those in none of `conflict_sets` and `halves`."""
+    """The listeners that are in no conflict set and in no half."""
     conflict_sets: tuple[tuple[Clause, ...], ...] = ()
     """Sets of clauses that compete for each spike of the signal; the best clause of a set comes first."""
     halves: tuple[Half, ...] = ()
-    """Sets of listeners for which the engine keeps a first spike without an activation (``engine/halves.py``)."""
+    """Sets of listeners whose clauses take two spikes. The engine keeps the first spike of the two without an
+    activation (``engine/halves.py``)."""
     watchers: tuple[Need, ...] = ()
     """The needs for this signal in `until` conditions (L21)."""
     retain: float = -1.0
-    """The age (seconds) up to which detached needs can see a spike that nothing holds; negative without such needs."""
+    """The age (seconds) up to which detached needs can see a spike that nothing holds; negative if there are no such
+    needs."""
 
     def __post_init__(self) -> None:
         self.name = self.signal.name
@@ -83,7 +85,7 @@ class SlotPlan:
     is_collection: bool = field(init=False)
     keep_latest: bool = field(init=False)
     heard: bool = False
-    """Whether any rule hears one of the slot's signals."""
+    """Whether a condition of any rule names one of the slot's signals."""
     guarded: bool = False
     """Whether any rule has a predicate on the slot."""
 
@@ -111,7 +113,8 @@ class Need:
     predicates: tuple[Predicate, ...]
     bit: int = field(init=False)
     kin: int = field(init=False)
-    """The bits of this need and of the needs that must hold spikes of the same causal group (L12)."""
+    """The bits of this need and of its kin: the clause's needs whose spikes must be in the same causal group as this
+    need's spike (L12)."""
     half: Half | None = field(init=False, default=None)
     """The need's `Half`, if the clause gets no activation until both of its needs are met; else None."""
 
@@ -124,11 +127,11 @@ class Need:
 
 @dataclass(slots=True, eq=False, repr=False)
 class Clause:
-    """A conjunction of a rule's condition, by which the rule may fire."""
+    """One conjunction of a rule's condition. If the conjunction is met, the rule may run."""
 
     index: int
     number: int
-    """The clause's place within its rule."""
+    """The clause's index within its rule."""
     rule: RulePlan
     source: str
     """The conjunction as text."""
@@ -138,11 +141,11 @@ class Clause:
     signals: tuple[Signal[Any], ...] = ()
     """The signals of the clause's constraints, as declared."""
     least: int = 0
-    """The pathway with the least information, as a set of places (`Completion`)."""
+    """The pathway with the least information, as an integer with one bit for each signal (see `Completion`)."""
     utility: float = 0.0
     """The information of the pathway `least` and of the clause's predicates, in nats (L9)."""
     base: float = 0.0
-    """The utility times the rule's weight; a utility of 0 counts as `NO_INFORMATION`."""
+    """The utility times the rule's weight; a utility of 0 counts as `NO_INFORMATION` (``plans.py``)."""
     all_bits: int = 0
     firm_bits: int = 0
     """The bits of the clause's non-detached needs."""
@@ -151,10 +154,11 @@ class Clause:
     simple: bool = False
     """Whether one spike is enough to make the clause ready: it has a single need, without `min_age`, and no guard."""
     apart: bool = False
-    """Whether an activation holds spikes of one group only: all non-detached needs of the clause are kin (L12)."""
+    """Whether all non-detached needs of the clause are kin (L12). If so, the non-detached spikes of an activation are
+    all in one causal group."""
     reflexive: bool = False
-    """Whether the clause hears a built-in flag, or has a predicate on one. If so, its activations change no built-in
-    flag (L22)."""
+    """Whether the clause names a built-in flag (`core:activity` or `core:pressure`) in a need or in a predicate. If so,
+    the clause's activations change no built-in flag (L22)."""
     unrivalled: bool = False
     """Whether the clause always goes before all other clauses that write one of its slots."""
     cyclic: bool = False
@@ -215,16 +219,17 @@ class Half:
         needs: The needs, in declaration order.
         best: The same needs; the need of the best clause comes first.
         ranks: For the clause of each need in `best`: its negated base utility, and its index.
-        rank: Index of a clause → the place of its need in `best`.
+        rank: Index of a clause → the position of its need in `best`.
         patience: The patience of the rules in seconds; None if they have the context's patience (L16).
         kin: Whether both spikes of a clause must belong to one causal group (L12).
         max_age: The age (seconds) at which the needs give a spike up.
-        slotset: The indices of the slots that each of the rules writes.
-        busy: Whether a held spike counts for ``core:activity``.
-        places: Index of a rule → the place of its need in `needs`.
-        sole: Whether first spikes wait in *benches* (``engine/benches.py``), whose oldest pair alone gets an
-            activation. Such a half has a single need. The signals of the need's clause come only from outside or from
-            detached rules. No better clause writes the slots of this clause for the same cause.
+        slotset: The indices of the slots that the rules write; all of these rules write the same slots.
+        busy: Whether a spike in the half makes ``core:activity`` true.
+        places: Index of a rule → the position of its need in `needs`.
+        sole: Whether first spikes wait in *benches*: of all complete pairs in a bench, only the oldest gets an
+            activation (``engine/benches.py``). Such a half has a single need. The signals of the need's clause come
+            only from outside or from detached rules. No better clause writes the slots of this clause for the same
+            cause.
     """
 
     needs: tuple[Need, ...]

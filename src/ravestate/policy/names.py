@@ -15,7 +15,7 @@ from ravestate.policy.model import SignalPlan, SlotPlan
 
 
 class Names:
-    """The numbered signals and slots that modules declare, in declaration order. Their mistakes go to `faults`."""
+    """The numbered signals and slots that modules declare, in declaration order. Mistakes in them go to `faults`."""
 
     def __init__(self, modules: Sequence[Module], faults: list[str]) -> None:
         self.faults = faults
@@ -59,11 +59,14 @@ class Names:
 
     def twice(self, what: str, name: str, first: str, second: str) -> None:
         """Add the fault that two signals, slots or rules (`what`), declared at `first` and `second`, share a name."""
-        if self._modules[name.split(":")[0]] < 2:  # `_in_order` reports two modules with one name
+        if self._modules[name.split(":")[0]] < 2:  # `_in_order` (``compile.py``) reports two modules with one name
             self.faults.append(f"two {what}s are named {name!r}: {first} and {second}; rename one")
 
     def signal(self, signal: Signal[Any], where: str) -> SignalPlan | None:
-        """Return the record of a signal that a declaration (`where`) uses. If none exists, add a fault; return None."""
+        """Return the record of a signal that a declaration (`where`) uses.
+
+        If the modules do not declare the signal, add a fault and return None.
+        """
         plan = self._signal_of.get(signal.name)
         if plan is not None and plan.signal is signal:
             return plan

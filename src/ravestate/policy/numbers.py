@@ -51,7 +51,10 @@ class Numbers:
         return float(number)
 
     def _setting(self, rule: Rule[Any, Any], ref: SettingRef, where: str) -> float | None:
-        """Return the value of a setting, or None after a fault. A setting without an owner is in the rule's module."""
+        """Return the number in a setting. If there is no such number, add a fault and return None.
+
+        The owner of a reference is a settings class. A reference without an owner means the rule's own module.
+        """
         own = self._named.get(rule.name.split(":")[0])
         module = own
         if ref.owner is not None and (own is None or own.settings is not ref.owner):

@@ -1,8 +1,8 @@
 """All pathways of a clause (law L8), for explanations.
 
 An *alternative* of a signal is a set of signals that together may cause it. To make a pathway of a signal, choose one
-of its alternatives, and one pathway of each signal in the alternative. The union of these pathways and the signal
-itself is the pathway.
+of its alternatives, and one pathway of each signal in this alternative. The union of the chosen pathways, together with
+the signal itself, is a pathway of the signal.
 
 The search walks from a signal to its causes, and notes its *way*: the signals that it has passed. The way ends at a
 signal that it has passed before, because the causes form a cycle there. So the pathways of a signal depend on the way
@@ -45,7 +45,7 @@ class Pathways:
         self.completion = completion
         self._of_clauses: dict[Clause, tuple[frozenset[Signal[Any]], ...]] = {}
         self._known: dict[int, Costs] = {}
-        self._within: dict[tuple[int, int], Costs] = {}  # (place, signals on the way that share its cycle) → pathways
+        self._within: dict[tuple[int, int], Costs] = {}  # (place, signals of the way on its cycle) → pathways
         self._unions = 0
 
     def of_clause(self, clause: Clause) -> tuple[frozenset[Signal[Any]], ...]:

@@ -112,7 +112,7 @@ def _check_reachable(causes: Causes, faults: list[str]) -> None:
 
 PREDICATE = math.log(2)  # a ``where`` or ``holds`` predicate adds this many nats: it halves the probability (L9)
 SAME = 1e-9  # base utilities count as equal if their relative difference is at most this
-NO_INFORMATION = 1e-9  # the utility of a clause without information, in nats: above 0, so that its weight counts
+NO_INFORMATION = 1e-9  # the utility of a clause without information, in nats: above 0, so that its rule's weight counts
 
 
 def _assign_utilities(signals: Sequence[SignalPlan], rules: Sequence[RulePlan], causes: Causes) -> Completion:

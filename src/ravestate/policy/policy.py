@@ -123,7 +123,7 @@ class Policy(Plans):
     def with_settings(self, settings: Mapping[str, Any]) -> Policy:
         """Return a policy with these modules and the given settings (module name → settings).
 
-        If no rule uses a setting, or if the settings are the same, return this policy.
+        If no rule uses a setting, or if this policy has equal settings already, return this policy.
 
         Raises:
             DeclarationErrors: The settings make a declaration impossible, e.g. a number is out of range.

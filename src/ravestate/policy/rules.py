@@ -18,8 +18,9 @@ from ravestate.policy.numbers import Numbers
 FLAGS = (f"{activity.name}:", f"{pressure.name}:")
 """The signals of the built-in flags, `core:activity` and `core:pressure`, have names that begin like this.
 
-An activation that hears such a signal changes neither flag. Otherwise, an activation with a spike of `activity.false`
-would make `activity` true, which withdraws that spike. Then `activity` would be false again, and so on without end.
+An activation whose clause names such a signal changes neither flag. Otherwise, an activation with a spike of
+`activity.false` would make `activity` true, which withdraws that spike. Then `activity` would be false again, and so on
+without end.
 """
 
 

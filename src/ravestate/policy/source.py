@@ -7,7 +7,8 @@ function itself binds.
 
 Guarded code, too, is checked only when the rule runs. Code is guarded if it is in a branch whose test uses a boolean
 constant, ``hasattr`` or a variable of an enclosing function. For other values of this variable, the enclosing function
-may make rules with other declarations. The body of a ``try`` that expects a missing name is guarded as well.
+may make rules with other declarations. The body of a ``try`` that handles the error of a missing name is guarded as
+well.
 """
 
 from __future__ import annotations
@@ -187,7 +188,8 @@ class _Reader:
 
 
 def _own(root: ast.AST, variables: Collection[str]) -> Iterator[ast.AST]:
-    """Yield a node and all nodes below it, except guarded code, such as a branch on one of `variables`."""
+    """Yield a node and all nodes inside it, except guarded code, such as a branch whose test uses one of
+    `variables`."""
     stack = [root]
     while stack:
         node = stack.pop()

@@ -97,7 +97,7 @@ class Clock:
                     _wake(sleeper)
 
     def go(self) -> None:
-        """Start a halted clock again from its present time, or from the later time to which it was driven meanwhile."""
+        """Start a halted clock again from its present time. If it was driven to a later time meanwhile, start there."""
         if self._halted is not None:
             present = self._halted
             self._origin = self._loop.time() - present

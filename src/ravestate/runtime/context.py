@@ -173,7 +173,7 @@ class Context:
             raise runner.fault
 
     async def quiet(self, slot: Slot[Any] | None = None) -> None:
-        """Wait until no foreground rule runs or waits for consent.
+        """Wait until no foreground rule (without ``background=True``) runs, or is ready and waits to run.
 
         Args:
             slot: Wait only for rules that may write this slot, or may cause another rule to write it. None: wait for
@@ -192,9 +192,10 @@ class Context:
         self._running().pause()
 
     def step(self) -> bool:
-        """Perform the next step of a paused context. One step is one wave of effects: it may start several rules.
+        """Perform the next step of a paused context.
 
-        If nothing is due now, set the clock forward to the next time at which something is due.
+        One step does what the engine has decided by now, for instance to start several rules. If nothing is due now,
+        set the clock forward to the next time at which something is due.
 
         Returns:
             False if the context is not paused, or if nothing is due, not even at a later time; else True.

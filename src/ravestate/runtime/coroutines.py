@@ -31,8 +31,9 @@ DONE = Done(None)
 def drive() -> Generator[Any, Any, Any]:
     """Run the functions of rule contexts, one after another.
 
-    The caller passes in each context by `send`. The generator yields everything that the function's coroutine yields,
-    and then a `Done`. So the end of a coroutine needs no exception, which would take longer than a short rule.
+    The caller sends each rule context to the generator, which calls the function of the context's rule. The generator
+    yields everything that the function's coroutine yields, and then a `Done`. So the end of a coroutine needs no
+    exception, which would take longer than a short rule.
     """
     ctx: Any = yield
     while True:

@@ -90,7 +90,7 @@ class Functions:
             self.drop(ctx, effect.reason)
 
     def holds(self, *, halted: bool) -> bool:
-        """Return whether effects must wait: for rules just cancelled or, in virtual time, for a plain function.
+        """Return whether the engine's effects must wait: for cancelled rules or, in virtual time, for a plain function.
 
         While the clock is `halted`, effects do not wait for the cancelled rules.
         """

@@ -1,4 +1,7 @@
-"""A journal of an engine's events, and the replay of a journal: the same events give the same effects (law L24)."""
+"""A journal of an engine's events, and the replay of a journal: the same events give the same effects (law L24).
+
+An *effect* is an instruction of the engine to the runtime, for instance to call the function of a rule.
+"""
 
 from __future__ import annotations
 
@@ -12,9 +15,9 @@ from ravestate.engine.events import Event
 
 @dataclass(slots=True)
 class Taken:
-    """A mark in the journal: here, the runner took the engine's effects.
+    """A mark in the journal: at this point, the runner took the engine's effects.
 
-    The engine decides only when its effects are taken, so a replay must take them at the same points.
+    The engine makes decisions only when the runner takes its effects. So a replay must take them at the same points.
     """
 
 

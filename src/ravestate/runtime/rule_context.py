@@ -62,10 +62,10 @@ class RuleContext:
         """The object that code outside the rules passed to ``put`` or ``emit`` with the event that led to this run.
 
         It is None if that code passed no object, or if no event from outside led to the run: then the agent acts on its
-        own initiative. Runs after a detached rule get the object as well. If several spikes of the run have an object, the
-        object of the youngest counts. The spikes of detached constraints count only if no other spike has an object.
-        ``core:error`` has the object of the run that failed. ``core:activity``, ``core:pressure`` and the failure of a
-        predicate have none.
+        own initiative. Runs that a detached rule leads to get the object as well. If several spikes of the run have an
+        object, the object of the youngest counts. The spikes of detached constraints count only if no other spike has
+        an object. ``core:error`` has the object of the run that failed. ``core:activity``, ``core:pressure`` and the
+        failure of a predicate have none.
         """
         self._payloads = effect.payloads
         self._values: dict[str, Any] = effect.values  # type: ignore[assignment]  # made for this run alone
@@ -184,7 +184,7 @@ class RuleContext:
         await self._host.clock.sleep(seconds)
 
     async def quiet(self) -> None:
-        """Wait until no foreground rule runs or waits for consent.
+        """Wait until no foreground rule (without ``background=True``) runs, or is ready and waits to run.
 
         Call this only in a background rule: a foreground rule would wait for its own end.
         """

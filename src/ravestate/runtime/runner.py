@@ -1,4 +1,7 @@
-"""The runner of one engine on an asyncio loop. It passes events on, performs the effects, and keeps one timer."""
+"""The runner of one engine on an asyncio loop. It passes events on, performs the effects, and keeps one timer.
+
+An *effect* is an instruction of the engine, for instance to call the function of a rule.
+"""
 
 from __future__ import annotations
 
@@ -58,7 +61,7 @@ class Runner:
 
     `Context` and `RuleContext` (see `rule_context.Host`) call its public methods. The runner asks the `agent` to stop
     when a rule asks the context to end, or when the engine fails. It calls `journal` with each event before the engine
-    receives it, and with `Taken` before it takes effects.
+    receives this event, and with `Taken` before the runner takes the engine's effects.
     """
 
     def __init__(
@@ -140,7 +143,10 @@ class Runner:
             self.receive(Write(slot, value, run, origin))
 
     def short_way(self) -> Parts | None:
-        """Return the engine's `Parts` if an event may go directly to them, which is faster; else None."""
+        """Return the engine's `Parts`, its inner objects, if an event may go directly to them; else None.
+
+        This way is faster than `receive`.
+        """
         if self._journal is not None or self.closed or THREAD() != self._home:
             return None
         if self._pumping:
@@ -247,7 +253,7 @@ class Runner:
         try:
             for _ in range(rounds):
                 if (self._is_virtual or rules.cleaning) and functions.holds(halted=self.clock.halted):
-                    break  # effects must wait for functions; when these end, they schedule the next call
+                    break  # effects must wait for functions; when these have ended, the runner goes on
                 self._rounds += 1
                 if not todo:
                     if self._journal is not None:
@@ -318,7 +324,7 @@ class Runner:
         self.clock.halt()
 
     def step(self) -> bool:
-        """Perform the next wave of effects while the clock is halted. If no effect is due, first set the clock forward.
+        """Perform the next round of effects while the clock is halted. If none is due, first set the clock forward.
 
         Returns:
             False if the clock is not halted, or if nothing is due, not even at a later time; else True.
@@ -336,7 +342,7 @@ class Runner:
         return bool(dues)
 
     def resume(self) -> None:
-        """Start a halted clock again from its present time, or from the later time to which it was driven meanwhile."""
+        """Start a halted clock again from its present time. If it was driven to a later time meanwhile, start there."""
         if self.clock.halted:
             self.clock.go()
             self._timer.clear()
@@ -378,7 +384,10 @@ class Runner:
     # ------------------------------------------------------------------------------------ the end
 
     async def quiet(self, slot: str | None = None) -> None:
-        """Wait until no foreground rule runs or waits for consent. With a slot, ignore rules that cannot affect it."""
+        """Wait until no foreground rule runs, or is ready and waits to run.
+
+        With a slot, ignore rules that cannot cause a write of the slot.
+        """
         await self.waits.until(lambda: self.waits.is_quiet(slot))
 
     def stop(self, failure: RavestateError | None) -> None:

@@ -1,4 +1,7 @@
-"""The spare task of a loop (``eager_task.py``). The contexts on the loop share this task: one at a time uses it."""
+"""The spare task of a loop, in which the next async rule starts. All contexts on the loop share this task in turn.
+
+If the rule suspends, the spare task *adopts* the rule's coroutine, and is no longer spare (``eager_task.py``).
+"""
 
 from __future__ import annotations
 

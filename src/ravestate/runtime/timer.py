@@ -9,7 +9,7 @@ from ravestate.runtime.clock import Clock
 
 
 class Timer:
-    """One timer at a time on a loop, for a time on a clock. It calls `fire` with that time (seconds)."""
+    """A timer for one moment on a clock. At this moment, it calls `fire` with the moment's time (seconds)."""
 
     def __init__(self, loop: asyncio.AbstractEventLoop, clock: Clock, fire: Callable[[float], None]) -> None:
         self._loop = loop

@@ -13,8 +13,8 @@ from ravestate.engine.engine import Engine
 class Waits:
     """The tasks that wait until an engine reaches a certain state.
 
-    While `is_busy()` is true, some effects have not been performed yet. A call of `schedule` makes the loop perform
-    these effects, and then call `check`.
+    Effects are the engine's instructions, such as to start a rule. While `is_busy()` is true, some effects have not
+    been performed yet. A call of `schedule` makes the loop perform these effects, and then call `check`.
     """
 
     def __init__(self, engine: Engine, is_busy: Callable[[], bool], schedule: Callable[[], None]) -> None:
@@ -56,7 +56,7 @@ class Waits:
         self.futures.clear()
 
     def is_quiet(self, slot: str | None = None) -> bool:
-        """Return whether no foreground rule runs or waits for consent.
+        """Return whether no foreground rule runs, or is ready and waits to run.
 
         With a slot, ignore rules that cannot cause a write of the slot.
         """
@@ -68,15 +68,15 @@ class Waits:
         return all(rule.background for rule in alive)
 
     def alive(self) -> dict[int, Activation]:
-        """Return the activations that run or wait for consent, by number."""
+        """Return the activations that run, or are ready and wait to run, by number."""
         return {a.id: a for a in (*self._engine.running.values(), *self._engine.waiting)}
 
     async def until_others_end(self, known: Mapping[int, Activation], seconds: float) -> None:
-        """Wait until all activations outside `known` have ended, and no activation holds a spike of ``rs.shutdown``
-        that is younger than its `min_age`.
+        """Wait until all activations outside `known` have ended.
 
-        A background rule with an activation in `known` may restart endlessly. So wait for a new run of such a rule only if
-        ``rs.shutdown`` led to that run. In any case, wait for at most `seconds`.
+        Also wait while an activation that holds a spike of ``rs.shutdown`` waits for the `min_age` of one of its
+        spikes. A background rule with an activation in `known` may restart endlessly. So wait for a new run of such a
+        rule only if ``rs.shutdown`` led to that run. In any case, wait for at most `seconds`.
         """
         engine = self._engine
         shutdown = engine.policy.signal_of["core:shutdown"].index

@@ -50,7 +50,7 @@ class ThreadPool:
     def reset(self) -> None:
         """Set the pool to its initial state, without threads and jobs."""
         lock = threading.Lock()
-        self.change = threading.Condition(lock)  # wakes idle threads for a job, or for the end of the last context
+        self.change = threading.Condition(lock)  # wakes idle threads for a job, or because the last context ends
         self.rest = threading.Condition(lock)  # wakes the ending process when no job runs
         self.contexts = 0  # the number of contexts with an open queue
         self.at_work: set[Job] = set()
