@@ -1,6 +1,6 @@
 // Written by tools/protocol.py from ravestate.modules.platform.webio.frames: change that file, and run the tool.
 
-/** The version of the protocol. Adding a type of frame or a field does not change it; any other change increases it. */
+/** The version of the protocol. A new type of frame or a new field keeps the version; any other change increases it. */
 export const VERSION = 1;
 
 /** The maximum number of characters in one utterance of a visitor. */
@@ -37,7 +37,7 @@ export interface Hello {
   name?: string;
 }
 
-/** The visitor says something. A text that arrives twice under one `id` counts once. */
+/** The visitor says something. The server ignores a second `Say` with the same `id`. */
 export interface Say {
   type: "say";
   id: string;
@@ -113,7 +113,7 @@ export interface Welcome {
   first: number;
   /** The agent's name. */
   agent: string;
-  /** The address of the board for this conversation, relative to the page; None if there is no board. */
+  /** The address of the board (Raveboard) for this conversation, relative to the page; None if there is none. */
   inside?: string;
   /** The number of the newest message; 0 before the first message. */
   last?: number;
@@ -187,7 +187,7 @@ export interface Heard {
   text: string;
 }
 
-/** An order to drop all unplayed sound. The sound after this frame is a new stream. */
+/** An order to drop all unplayed sound. The sound after this frame belongs to a new stream. */
 export interface Flush {
   type: "flush";
   /** The number of the new stream. */

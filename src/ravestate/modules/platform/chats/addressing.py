@@ -30,7 +30,7 @@ def addressed(
         handles: The agent's handles on the messenger, for example ``@robin_bot``. The result leaves them out.
         names: The agent's names. In a group, a message with one of them is for the agent.
         group: Whether several people may be in the chat.
-        called: Whether the message is for the agent for another reason, e.g. because it replies to the agent.
+        called: Whether something else shows that the message is for the agent, e.g. that it replies to the agent.
 
     Example:
         >>> addressed("@robin_bot, how are you?", ["@robin_bot"], ["Robin"], group=True)

@@ -7,8 +7,8 @@ import logging
 import random
 
 FIRST_WAIT, LONGEST_WAIT = 0.5, 60.0
-"""The first wait between two attempts, and the length that no wait exceeds (seconds). Each wait is about twice as long as
-the wait before it."""
+"""The first and the longest wait between two attempts (seconds). Each wait is about twice as long as the wait before
+it."""
 
 TOLD = 3
 """After this many failures in a row, the next failure is logged as a warning."""

@@ -33,8 +33,8 @@ if TYPE_CHECKING:
     from .room import Room
 
 GRACE = 0.05
-"""An answer waits at most this many seconds for the agent to finish. If the agent finishes in time, one transaction
-stores the answer and marks the message as done."""
+"""An answer waits at most this many seconds before it is stored. If no rule can write a further answer by then, one
+transaction stores the answer and marks its message as done."""
 
 TURN = 1.0
 """A message waits at most this many seconds for the answer to the previous message. Then it may interrupt this
@@ -64,7 +64,7 @@ class Chat:
         self._hearing: Entry | None = None  # the message that the agent is about to hear
         self._open: list[Entry] = []  # messages that the agent has heard, and may still answer
         self._said: list[Answer] = []  # answers that are not in the store yet
-        self._repeated: Counter[object] = Counter()  # answers from before a crash, which the store has kept
+        self._repeated: Counter[object] = Counter()  # stored answers from before a crash, not to be sent again
         self._replaceable: dict[int, list[str]] = {}  # an edit's number → ids of answers to replace
         self._draft = Draft(id)
         self._state: Literal["open", "leaving", "gone"] = "open"
@@ -219,7 +219,7 @@ class Chat:
         return True
 
     async def _meet(self, context: Context, entry: Entry) -> bool:
-        """Add a message's sender to the present users. Return whether they were absent, and are new in this chat."""
+        """Add a message's sender to the present users. Return whether the sender was absent, and is new in this chat."""
         name, person = self._room.name, entry.message.person
         if people.present(context, name, person):
             return False
@@ -335,7 +335,10 @@ class Chat:
             self._say(Outgoing(key="", chat=self.id, text=part), cause, first=False)
 
     def _longest(self, cause: Entry | None) -> int:
-        """Return the maximum number of characters in an answer to `cause`. An answer to a voice note is a caption."""
+        """Return the maximum number of characters in an answer to `cause`.
+
+        The answer to a voice note is a voice note, with its words as the caption.
+        """
         carrier = self._room.carrier
         return carrier.longest_caption if cause is not None and cause.message.kind == "voice" else carrier.longest
 

@@ -51,7 +51,7 @@ class Draft:
     def cut_off(self) -> None:
         """Note that no growing answer gets more pieces: the next piece begins a new answer.
 
-        The words stay until the next `cut_off`, because the rule that sends them (`Chat.fall_silent`) may run later.
+        The words stay until the next `cut_off`, because `Chat.fall_silent`, which sends them, may be called later.
         """
         for cause in self._cut:
             self._texts.pop(cause, None)

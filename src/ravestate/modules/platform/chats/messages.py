@@ -25,7 +25,7 @@ class Incoming:
     """A message from a messenger to the agent.
 
     Attributes:
-        key: The id of the event on the messenger. The room ignores a message with a known key.
+        key: The id of the event on the messenger. `Room` (all chats of the agent) ignores a message with a known key.
         chat: The id of the chat.
         id: The id of the message; for an ``edit`` or a ``reaction``, the id of the message that it concerns.
         person: The person who sent the message.
@@ -50,8 +50,8 @@ class Incoming:
 
 
 Sent = Literal["text", "picture", "voice", "edit", "delete", "reaction"]
-"""The kinds of outgoing messages. A carrier gets a ``voice`` message with its sound, or as ``text`` if there is no
-sound. It gets an ``edit`` or a ``delete`` only after an incoming ``edit``."""
+"""The kinds of outgoing messages. A `Carrier` gets a ``voice`` message with its sound, or as ``text`` if there is no
+sound. A carrier gets an ``edit`` or a ``delete`` only after an incoming ``edit``."""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -124,7 +124,8 @@ class Carrier(Protocol):
 
         Args:
             message: The message.
-            again: Whether an earlier attempt may have delivered the message. If it has, do not send it again.
+            again: Whether an earlier attempt may have delivered the message. If the message has arrived, do not send it
+                again.
 
         Raises:
             DeliveryError: The message was not sent, or the carrier does not know whether it was sent.
@@ -134,7 +135,8 @@ class Carrier(Protocol):
     def trace(self, chat: str) -> str:
         """Return a text to store before the first attempt to send a message to a chat.
 
-        If that attempt ends without an answer, the text helps a later `send` to find out whether the message arrived.
+        If the messenger does not answer that attempt, the text helps a later `send` to find out whether the message
+        arrived.
         """
         ...
 

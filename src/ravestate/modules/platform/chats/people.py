@@ -36,7 +36,7 @@ async def welcome(context: Context, platform: str, person: Person, log: logging.
                 name = interloc.Recognised(node["name"], node) if node.get("name") else name
     except (RavestateError, TimeoutError) as error:
         log.warning("memory could not look up a person: %s", str(error) or "it took too long")
-        name = None  # memory may know another person of the same name
+        name = None  # memory may know another person of this name
     join(context, key(platform, person), name, origin)
 
 
@@ -66,7 +66,9 @@ def present(context: Context, platform: str, person: Person) -> bool:
 
 
 async def forget(context: Context, platform: str, person: Person) -> None:
-    """Remove a person, and the nodes that only they need (see `Graph.forget`), from memory. Raise ``interloc.forgotten``.
+    """Remove a person from memory, and raise ``interloc.forgotten``.
+
+    This also removes the entries that only this person needs (see `Graph.forget`).
 
     Raises:
         RavestateError: Memory failed.

@@ -102,8 +102,8 @@ class Room:
 
         Args:
             events: The events.
-            read: A function that returns the message in an event; None if the event does not concern the agent. If it
-                raises an exception, the room ignores the event, because anybody can send an event of any shape.
+            read: A function that returns the message in an event; None if the event does not concern the agent. If the
+                function raises an exception, the room ignores the event, because anybody can send an event of any shape.
         """
         found: list[Incoming] = []
         for event in events:

@@ -13,7 +13,7 @@ from .store import Item, Store
 from .voice import voiced
 
 IN_FLIGHT = 8
-"""The maximum number of attempts at a time. After a crash, the delivery of at most this many messages is uncertain."""
+"""The maximum number of deliveries at a time. After a crash, the delivery of at most this many messages is uncertain."""
 
 SHOWN = 2.0
 """A message waits at most this many seconds for the end of a request that shows its draft."""
@@ -110,7 +110,7 @@ class Sender:
         except Exception:  # a fault in one chat must not end the others
             self._log.exception("the messages to chat %s are not sent", chat)
         finally:
-            del self._tasks[chat]  # without a pause after `_drain`, so that `wake` overlooks no new message
+            del self._tasks[chat]  # no `await` between `_drain` and this line, so `wake` overlooks no new message
 
     async def close(self, grace: float) -> None:
         """Deliver messages for up to `grace` seconds; the rest stays in the store."""
@@ -164,7 +164,7 @@ class Sender:
         """Try to deliver an item once. Return the error if the attempt fails."""
         async with self._attempts:
             await self.pace.turn()
-            if (showing := self._showing.get(item.message.chat)) is not None:  # a later draft would stay
+            if (showing := self._showing.get(item.message.chat)) is not None:  # a draft after the message would stay
                 await asyncio.wait((showing,), timeout=SHOWN)
             begun = item if item.begun else self._store.begin(item, self._carrier.trace(item.message.chat))
             try:

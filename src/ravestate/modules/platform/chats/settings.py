@@ -21,7 +21,7 @@ def _address(text: str) -> str:
 
 
 Address = Annotated[str, pydantic.AfterValidator(_address)]
-"""The address of a server, with ``http://`` or ``https://``. Any other text is an error, before a request to it fails."""
+"""The address of a server, with ``http://`` or ``https://``. Any other text is refused as a setting."""
 
 
 class ChatSettings(rs.Settings):

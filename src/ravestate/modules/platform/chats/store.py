@@ -255,7 +255,7 @@ class Store:
         return bool(self._all("SELECT 1 FROM outbox WHERE n = ?", item.n))
 
     def begin(self, item: Item, trace: str) -> Item:
-        """Note that an attempt to deliver an item begins. Return the item with the carrier's trace."""
+        """Note that an attempt to deliver an item begins. Return the item with `trace` (see `Carrier.trace`)."""
         message = replace(item.message, trace=trace)
         with self._transaction():
             self._db.execute("UPDATE outbox SET state = 'begun', message = ? WHERE n = ?", (_json(message), item.n))

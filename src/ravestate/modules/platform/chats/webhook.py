@@ -38,7 +38,7 @@ async def listen(
     """Receive the requests of a messenger until cancelled. The server acknowledges a request after `take` has returned.
 
     Args:
-        url: The public address. The server uses only its path.
+        url: The public address of the webhook. The server uses only the path of this address.
         address: The host and the port to listen on.
         header: The name of the header in which the messenger sends the secret.
         secret: The secret. The server refuses a request without it.

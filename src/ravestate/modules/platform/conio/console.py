@@ -128,7 +128,7 @@ class Console:
         """Print `text` and a line end.
 
         If `text` begins with the pieces that `grow` has printed, only the rest of `text` is printed. If `text` begins
-        in another way, the line of pieces ends first, and later pieces continue on a new line.
+        in another way, the line of pieces ends first. Further pieces then begin a new line.
         """
         text = printable(text)
         if self._streamed and (rest := rawio.rest(text, self._streamed)) is not None:

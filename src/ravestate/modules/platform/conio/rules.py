@@ -20,7 +20,7 @@ USER = "conio"  # the key of the user at the console in ``interloc.users``
 
 
 @module.rule(
-    when=rs.startup.detached(),  # detached, so that the rule does not block slots for other platforms
+    when=rs.startup.detached(),  # detached, so that other platforms may also write these slots at startup
     writes=(screen, rawio.input, interloc.users),
     emits=rawio.typing,
     detached=True,  # each line is a separate cause
@@ -58,7 +58,7 @@ async def serve(ctx: rs.RuleContext) -> None:
         if is_terminal(sys.stdin, sys.stdout):
             console.utter("Ctrl-D ends the conversation.")
         ctx[interloc.users].add(USER, ctx.settings.name)
-        # `note_prompt` runs when the loop below waits. By then, the prompt is on the screen.
+        # `note_prompt` runs when `async for` first waits for a line. By then, the prompt is on the screen.
         asyncio.get_running_loop().call_soon(note_prompt)
         try:
             async for line in console:

@@ -35,7 +35,7 @@ class Terminal:
     """Reads lines with prompt_toolkit, and prints texts without disturbing the line that the user types.
 
     A finished line appears above the prompt. A line that comes in pieces (`stream`) is the first row of the prompt
-    until it is finished or full. This row can grow while the user types below it.
+    until it is finished or as wide as the terminal. This row can grow while the user types below it.
     """
 
     interactive = True
@@ -141,7 +141,7 @@ class Terminal:
         def leave_out(event: KeyPressEvent) -> None:
             """Ignore the key, because the line is full."""
 
-        @keys.add(Keys.Vt100MouseEvent, eager=True)  # a pasted colour code may look like this key
+        @keys.add(Keys.Vt100MouseEvent, eager=True)  # a pasted colour code may look like a mouse event
         def ignore(event: KeyPressEvent) -> None:
             """Ignore the mouse."""
 

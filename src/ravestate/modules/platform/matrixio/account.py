@@ -35,7 +35,7 @@ if TYPE_CHECKING:
 
     from .names import Settings
 
-POLL = 30_000  # if there are no events, the server holds a request for this many milliseconds
+POLL = 30_000  # if there are no events, the server waits this many milliseconds before it answers
 ANSWER = 20.0  # the maximum number of seconds to wait for the answer to a request
 PAGE = 100  # the maximum number of events of a room in one answer
 DEVICE = "RAVESTATE"  # always the same, so that the server recognises a message that is repeated after a restart
@@ -97,7 +97,7 @@ async def _log_in(client: AsyncClient, settings: Settings) -> None:
 
 
 class Inlet:
-    """Gets events from the server, and passes their messages to `room`, which holds all chats of the account."""
+    """Gets events from the server, and passes their messages to `room` (all chats of the account)."""
 
     def __init__(self, client: AsyncClient, room: Room, settings: Settings) -> None:
         self._client, self._room, self._settings = client, room, settings

@@ -32,7 +32,7 @@ class Settings(rs.Settings):
     robot: NameOrPath = "roboy"
     """``roboy``, ``turtlebot``, or the path of a data file of your own."""
     bus: str = "127.0.0.1:7411"
-    """The address of the stand-in's bus."""
+    """The address of the built-in bus, which replaces ROS for the stand-in."""
     feeling: float = pydantic.Field(5.0, ge=0, allow_inf_nan=False)
     """The face shows a feeling for this many seconds."""
     look_around: float = pydantic.Field(8.0, gt=0, allow_inf_nan=False)

@@ -48,7 +48,7 @@ class PageServer:
         self._listener.setsockopt(socket.SOL_SOCKET, socket.SO_REUSEADDR, 1)
         try:
             self._listener.bind(("127.0.0.1", self._port))
-            self._listener.listen()  # from now on, a visitor who comes too early waits for the server
+            self._listener.listen()  # from now on, a browser that connects before the server runs waits for it
         except (OSError, OverflowError) as error:
             self._listener.close()
             raise PlatformError(

@@ -18,7 +18,7 @@ ROBOTS = Path(__file__).with_name("robots")
 
 
 class Port(pydantic.BaseModel):
-    """A topic or a service of the robot, and the field of its messages that holds the value."""
+    """A topic or a service of the robot, and the field of its messages that contains the value."""
 
     model_config = pydantic.ConfigDict(extra="forbid", frozen=True)
 
@@ -63,7 +63,7 @@ class Port(pydantic.BaseModel):
 
 
 class Direction(Port):
-    """The topic with the direction of the speaker."""
+    """The topic with the direction of the person who speaks."""
 
     unit: Literal["radians", "degrees"] = "radians"
 
@@ -87,7 +87,7 @@ class Axis(Port):
     high: float
     """The highest angle (radians)."""
     speed: float | None = pydantic.Field(None, gt=0)
-    """How fast the axis turns (radians per second), if the field holds a speed. None if the field holds an angle."""
+    """How fast the axis turns (radians per second), if the field is a speed. None if the field is an angle."""
 
     def limited(self, angle: float) -> float:
         """Return the nearest angle within the range of the axis."""

@@ -20,7 +20,8 @@ from .robot import load_robot
 THOUGHTFUL = Pose(yaw=0.25, pitch=0.2)
 """The gaze of a thinking robot."""
 _connected: WeakSet[Node] = WeakSet()
-"""The nodes with a robot's connection. The slot `body` does not suffice: two runs of `connect` may begin together."""
+"""The nodes that already have a connection to the robot. The slot `body` does not suffice: two runs of `connect` may
+begin together."""
 THINKS_AFTER = 0.6
 """After this many seconds of work, a robot shows that it is thinking."""
 
@@ -51,7 +52,7 @@ async def connect(ctx: rs.RuleContext) -> rs.Resign | None:
         assert node is not None  # `_not_now` has checked this
         made = Connection(robot, node, ctx.sleep, lambda: ctx.now, settings.speech_timeout)
         _connected.add(node)
-        ctx[body] = made  # now, so that the first words wait until the connection is open
+        ctx[body] = made  # write the slot before `open`, so that the first words wait until the connection is open
         await made.open()
 
         def hear(message: Any) -> None:
@@ -109,7 +110,7 @@ def _not_now(ctx: rs.RuleContext) -> str | None:
 
 
 def _nowhere() -> Place:
-    """Raise an error, because a node on the bus must not look for a bridge's program."""
+    """Raise an error: a node on the built-in bus has no program that connects it to ROS."""
     raise PlatformError("the bus has no program")
 
 

@@ -1,4 +1,4 @@
-"""The bot: it logs in, gets updates by polling or by a webhook, and passes their messages to the room."""
+"""The bot: it logs in, gets updates by polling or by a webhook, and passes their messages to the room (all its chats)."""
 
 from __future__ import annotations
 
@@ -25,9 +25,9 @@ if TYPE_CHECKING:
 
     from .names import Settings
 
-POLL = 30  # if there are no updates, the server holds a request for them for this many seconds
+POLL = 30  # if there are no updates, the server waits this many seconds before it answers
 MOST = 100  # the maximum number of updates in an answer
-PATIENCE = 10  # the bot waits for updates for `POLL` seconds, and then for this many more
+PATIENCE = 10  # the bot waits for an answer with updates for `POLL` seconds, and for this many more
 ANSWER = 20.0  # the maximum number of seconds to wait for the answer to a request, except a request for updates
 CONFLICTS = 4  # after this many conflicts in a row, the bot gives up, because another program polls the same bot
 SETTLED = 60.0  # a bot that has run for this many seconds does not give up, because the other program came later
@@ -74,7 +74,7 @@ async def _log_in(bot: Bot, root: str) -> User:
 
 
 class Inlet:
-    """Gets updates from the server, and passes their messages to `room`, which holds all chats of the bot."""
+    """Gets updates from the server, and passes their messages to `room` (all chats of the bot)."""
 
     def __init__(self, bot: Bot, me: User, room: Room, carrier: TelegramCarrier, settings: Settings) -> None:
         self._bot, self._me, self._room, self._carrier, self._settings = bot, me, room, carrier, settings

@@ -20,7 +20,7 @@ from .requests import FloodError
 
 UNSENT = (httpx.ConnectError, httpx.ConnectTimeout, httpx.PoolTimeout)  # errors before a request is sent
 AHEAD = 40  # after an attempt without an answer, look for the message among this many ids
-KNOWN = 1000  # the carrier remembers this many of the newest message ids for each numbering
+KNOWN = 1000  # how many of the newest message ids to remember for each numbering (see `_numbering`)
 DRAFT = 1  # the id of every draft, because a chat has at most one draft at a time
 BIGGEST = 20 * 1024 * 1024  # the size in bytes of the largest file that the server delivers
 REACTIONS = frozenset(str(emoji.value) for emoji in ReactionEmoji)
@@ -113,13 +113,13 @@ class TelegramCarrier:
         id, left = int(message.trace), AHEAD
         while left > 0:
             id += 1
-            if id in known:  # another message
+            if id in known:  # the id of another message
                 continue
             left -= 1
             try:
                 await self._bot.edit_message_reply_markup(message.chat, id)
             except BadRequest as error:
-                if "not modified" in error.message:  # the bot's own message, in this chat, newer than all others
+                if "not modified" in error.message:  # the bot's own message in this chat, newer than the trace
                     return str(id)
             except InvalidToken:  # a server without this method
                 return None

@@ -17,7 +17,7 @@ class Settings(ChatSettings):
     base_url: Address = "https://api.telegram.org/bot"
     """The address of the Bot API server, up to the token."""
     webhook: Address | None = None
-    """The public address, with ``https://``, to which Telegram delivers messages. If None, the bot asks for them."""
+    """The public address, with ``https://``, to which Telegram delivers messages. If None, the bot asks Telegram."""
     host: str = "127.0.0.1"
     """The address to listen on for the webhook."""
     port: int = pydantic.Field(8443, ge=0, le=65535)

@@ -1,4 +1,4 @@
-"""Requests to the Bot API. They raise different errors if the server asks for a wait, and if the server has failed."""
+"""Requests to the Bot API. They raise a `FloodError` if the server asks for a wait, or a `NetworkError` if it fails."""
 
 from __future__ import annotations
 

@@ -48,7 +48,7 @@ def incoming(update: Update, me: User, names: Iterable[str]) -> Incoming | None:
 
 
 def _content(message: Message, text: str) -> tuple[Said, str, str] | None:
-    """Return the kind, the words and the file of a message."""
+    """Return the kind, the words and the file of a message; None if the message has no content that the agent knows."""
     if message.photo:
         return "picture", text, message.photo[-1].file_id
     if message.document and (message.document.mime_type or "").startswith("image/"):

@@ -49,8 +49,8 @@ def by_phonemes(text: str, spoken: Sequence[tuple[float, int]], length: float) -
     """Return the words of a text with their times, from the time and the number of phonemes of each spoken word.
 
     One spoken word may be several written words ("there was a"), and a written number is several spoken words. The
-    function chooses the alignment with the most plausible lengths. All times, and the `length` of the sound, are in
-    seconds.
+    function chooses the alignment in which the numbers of phonemes agree best. All times, and the `length` of the
+    sound, are in seconds.
     """
     places = places_of(text)
     expected = [_expected(text[begin:end]) for begin, end in places]

@@ -95,7 +95,7 @@ class DeviceLine:
             yield block
 
     async def _keep_open(self) -> None:
-        """Open the devices again if one has been unplugged. PortAudio reports no error then, but carries no sound."""
+        """Open the devices again if one has been unplugged. PortAudio then carries no sound, and reports no error."""
         while not self._closed:
             await asyncio.sleep(GONE / 4)
             late = self._loop.time() - GONE

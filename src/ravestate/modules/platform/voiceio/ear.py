@@ -36,7 +36,7 @@ LONG = 16
 LONGEST = 60.0
 """The longest turn (seconds). A longer turn is split into several turns."""
 CLIPPED = 0.02
-"""A second of speech counts as clipped if more than this share of its samples is at the limit."""
+"""A second of speech counts as clipped (too loud) if more than this share of its samples is at the limit of 16 bits."""
 
 COMPARED = round(2.0 * IN_RATE / CHUNK)
 """When a pause begins, the ear compares the voices before and after the previous pause: at most this many chunks (2 s)
@@ -103,7 +103,7 @@ class Ear:
         self.parted: Turn | None = None
         """The turn of the first person, after another person has begun to speak (event ``another``)."""
         self.clipped = False
-        """Whether the sound has been so loud that it was cut off at the limit."""
+        """Whether the sound has been so loud that its peaks were cut off."""
         self._activity = Activity()
         self._speech = speech
         self._pause = round(pause * IN_RATE / CHUNK)
@@ -223,7 +223,7 @@ class Ear:
         return pitch(lately) if len(lately) == NEEDED else None
 
     def _part(self, now: float) -> bool:
-        """If another person has spoken since the last pause, split the turn in two. Return whether it was split."""
+        """If a second person has begun to speak in the turn, split the turn in two. Return whether it was split."""
         turn = self.turn
         if turn is None:
             return False

@@ -19,7 +19,10 @@ LONGEST_END = 300.0
 
 
 async def follow(ctx: rs.RuleContext, talk: Conversation) -> None:
-    """Feed the ear until the line is closed, or until the agent has finished after the end of a recording."""
+    """Pass each block to the ear, which detects speech, and the ear's events to the rules.
+
+    Return when the line is closed, or when the agent has finished after the end of a recording.
+    """
     settings, line, ear, mouth = talk.settings, talk.line, talk.ear, talk.mouth
     spoke_at, ended_at, clipped = float("-inf"), float("inf"), False
     quiet: asyncio.Future[None] | None = None

@@ -1,4 +1,7 @@
-"""Estimate how much of the agent's voice stays in the microphone's sound. Only louder sound counts as another voice."""
+"""Estimate how much of the agent's voice stays in the microphone's sound. Only louder sound counts as another voice.
+
+The *cleaned* sound is the microphone's sound after echo cancellation. A *frame* has 20 ms of sound, a *chunk* 32 ms.
+"""
 
 from __future__ import annotations
 
@@ -27,24 +30,26 @@ DOWN, UP, SLOWLY = 10 ** (-0.03), 10**0.09, 10**0.01
 chunk of another voice multiplies the share by `SLOWLY`."""
 
 SETTLED = 15
-"""The measured strength of the echo counts after this many frames (0.3 s) with sound on both sides."""
+"""The measured strength of the echo is used after this many frames (0.3 s) in which the microphone and the loudspeaker
+have sound."""
 SMOOTH = 0.3
 """The weight of a new measurement in the mean strength."""
 MARGIN = 10 ** (4 / 10)
 """An echo may be this many times stronger than measured, because the measurement misses late reflections."""
 
 ALIKE = 25.0
-"""If the `likeness` is greater than this, the microphone hears the loudspeaker."""
+"""If the `likeness` of their sounds is greater than this, the microphone hears the loudspeaker."""
 TWICE = 2
 """This many comparisons in a row prove an echo. One comparison may find two voices alike by chance."""
 DOUBTFUL = 12
-"""A line counts as free of echo after this many frames (0.24 s) with sound on both sides, but without an echo."""
+"""A line counts as free of echo after this many frames (0.24 s) in which microphone and loudspeaker have sound, but no
+echo is found."""
 QUIET = 0.25
 """A frame in which the microphone is silent counts as only this part of a frame towards `DOUBTFUL`, because an echo may
 be late."""
 OFTEN, SELDOM = 2, 8
-"""The two sounds are compared once in `OFTEN` frames until the first decision, and once in `SELDOM` frames after it. A
-comparison takes milliseconds."""
+"""The two sounds are compared once in `OFTEN` frames until it is decided whether there is an echo. After that, they are
+compared once in `SELDOM` frames. A comparison takes milliseconds."""
 GONE = 250
 """The number of frames (5 s) that replaces `DOUBTFUL` on a line that has had an echo. It is greater, because a person
 may speak so loudly that no echo is found."""
@@ -67,10 +72,10 @@ class Leak:
         self._strength: float | None = None  # the measured strength of the echo before cleaning
         self._unlike = 0.0  # how many frames (weighted) came since the last echo
         self._limit = DOUBTFUL  # after this many such frames, the line counts as free of echo
-        self._frame = 0  # how many frames had sound on both sides
+        self._frame = 0  # in how many frames the microphone and the loudspeaker had sound
         self._alike = 0  # how many comparisons in a row have found an echo
         self.echoes = False
-        """Whether an echo has been found, so that the microphone's sound needs cleaning."""
+        """Whether an echo has been found. If so, the microphone's sound needs cleaning."""
 
     @property
     def possible(self) -> bool:

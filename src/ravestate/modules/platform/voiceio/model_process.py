@@ -16,7 +16,7 @@ CHILDREN = Path(__file__).with_name("children")
 
 
 def take(kind: str, config: Mapping[str, Any], python: str = sys.executable, *, shared: bool = True) -> ModelProcess:
-    """Return the process of the backend in the file `kind` of the folder `CHILDREN`. Pair each call with `drop`.
+    """Return the process of the backend `kind`: a file of this name in `CHILDREN`. Pair each call with `drop`.
 
     For the other arguments, see `ravestate.modules._children.process.take`.
     """

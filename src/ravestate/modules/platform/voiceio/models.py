@@ -20,7 +20,7 @@ SMART_TURN = "smart-turn-*.onnx"
 
 
 def folders() -> tuple[Path, ...]:
-    """Return the folders that may hold models: the user's folder, and the folder of this Python environment."""
+    """Return the folders that may contain models: the user's folder, and the folder of this Python environment."""
     return user_folder("data") / "voice", Path(sys.prefix) / "share" / "ravestate" / "voice"
 
 
@@ -55,7 +55,9 @@ def whisper_models() -> Iterator[tuple[str, Path]]:
 
 
 def fetch_whisper(name: str, progress: Callable[[str], None]) -> Path:
-    """Download the faster-whisper model `name` (``base``, ``small.en`` or a repository) into the user's folder.
+    """Download the faster-whisper model `name` into the user's folder.
+
+    The name is ``base``, ``small.en`` or the like, or a repository of Hugging Face.
 
     Before the download, the function calls `progress` with a sentence about it.
 

@@ -25,8 +25,8 @@ FAINT = 0.1
 """Sound at the end of a word counts as a pause if its level is below this share of the word's greatest level."""
 DRIFT = 0.06
 """The echo's reference is the loudspeaker's sound for the echo canceller. The position in the reference advances by
-the length of the microphone's sound. If it differs from the loudspeaker's position by more than this many seconds, the
-mouth takes over the loudspeaker's position."""
+the length of the microphone's sound. If this position differs from the loudspeaker's position by more than this many
+seconds, the mouth sets it to the loudspeaker's position."""
 LEAD = 4.0
 """If the loudspeaker's queue has more than this many seconds of sound, the mouth waits before it synthesises more."""
 KEPT = 30.0
@@ -69,7 +69,7 @@ class Speech:
         self._grown.set()
 
     async def sentences(self) -> AsyncIterator[tuple[int, str]]:
-        """Yield the place and the text of each sentence as soon as it is complete."""
+        """Yield each sentence as soon as it is complete: the index of its first character, and its text."""
         whole = False
         while not whole:
             self._grown.clear()
@@ -111,7 +111,7 @@ class Mouth:
         self.silent_since: float | None = None
         """The time at which `hold` stopped the speech; None if the speech is not held."""
         self._queue: list[_Queued] = []
-        self._heard = 0  # characters that the user had heard at the last `release`, which repeats the interrupted word
+        self._heard = 0  # how many characters the user had heard before the last `release`
         self._end = 0.0
         self._held_at: float | None = None
         self._released = asyncio.Event()

@@ -1,4 +1,7 @@
-"""The parts of a spoken conversation (line, ear, mouth and models), and functions that open them."""
+"""The parts of a spoken conversation (line, ear, mouth and models), and functions that open them.
+
+The line is a microphone and a loudspeaker. The ear detects the user's speech; the mouth plays the agent's utterances.
+"""
 
 from __future__ import annotations
 
@@ -112,7 +115,7 @@ async def open_conversation(given: Line | None, settings: Settings, warn: Callab
     recogniser = Recogniser(settings)  # not in a thread, where a cancellation would leave it open
     voice = line = None
     try:
-        recorded = given is None and is_file(settings.source)  # the same recording must lead to the same conversation
+        recorded = given is None and is_file(settings.source)  # if so, no other conversation may influence this one
         voice = Synthesiser(settings, shared=not recorded)
         await asyncio.gather(asyncio.to_thread(recogniser.load), asyncio.to_thread(voice.load))
         if (melody := await asyncio.to_thread(_melody)) is None:

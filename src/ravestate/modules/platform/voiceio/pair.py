@@ -1,4 +1,7 @@
-"""Combine the microphone of one line with the loudspeaker of another, for example a recording with a device."""
+"""Combine the microphone of one line with the loudspeaker of another, for example a recording with a device.
+
+A *line* is a microphone and a loudspeaker.
+"""
 
 from __future__ import annotations
 

@@ -28,7 +28,7 @@ AGREE = 0.9
 """At a change of voice, a threshold separates the earlier pitches from the later ones. It is halfway between the medians
 of the two groups (in logarithms). At least this share of each group must be on the same side as the group's median."""
 SOFT = 500
-"""A frame below this level counts as silence."""
+"""A frame in which no sample reaches this level counts as silence."""
 _SHORTEST, _LONGEST = int(IN_RATE / HIGHEST), int(IN_RATE / LOWEST)
 NEEDED = FRAME + _LONGEST + 1
 """The number of samples needed to compute a pitch: a frame, and the frame one period later."""

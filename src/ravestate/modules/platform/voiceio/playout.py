@@ -48,7 +48,7 @@ class PlayOut:
         return self._parts[-1].end if self._parts else float("-inf")
 
     def played(self, now: float) -> float:
-        """Return how many seconds of sound have been played until `now`, without pauses."""
+        """Return how many seconds of sound have been played until `now`. Pauses between sounds do not count."""
         return sum(min(part.end, max(part.begin, now)) - part.begin for part in self._parts)
 
     def parts(self) -> Iterator[tuple[float, bytes]]:

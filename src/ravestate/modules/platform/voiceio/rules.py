@@ -276,7 +276,7 @@ async def end_growing(ctx: rs.RuleContext) -> rs.Resign | None:
     until=barge_in | utterance | rawio.hush | conversation.changed | rs.shutdown,
 )
 async def voice_it(ctx: rs.RuleContext) -> rs.Resign | None:
-    """Speak an utterance sentence by sentence. In the end, note what the user heard of it, unless it is a filler."""
+    """Speak an utterance sentence by sentence. At the end, note what the user heard of it, unless it is a filler."""
     talk, saying, manner = ctx[conversation], ctx.payload(speech), ctx[prosody]
     if talk is None:
         return rs.Resign("the line is closed")
@@ -297,7 +297,7 @@ async def voice_it(ctx: rs.RuleContext) -> rs.Resign | None:
                     mouth.queue(spoken, place)
                     if not mouth.speaking:
                         mouth.speaking, saying.start = True, ctx.now
-                        if talk.ear.speaking:  # the user spoke first
+                        if talk.ear.speaking:  # the user has begun to speak before the agent
                             mouth.hold(ctx.now)
                             ctx[held] = True
                         else:
@@ -348,7 +348,7 @@ async def hold(ctx: rs.RuleContext) -> rs.Resign | None:
     background=True,
 )
 async def give_way(ctx: rs.RuleContext) -> None:
-    """Stop speaking for good if the user keeps speaking: an "mhm" would be shorter."""
+    """End the agent's utterance if the user keeps speaking: an "mhm" would be shorter."""
     await ctx.sleep(ctx.settings.back_channel)
     ctx.emit(barge_in)
 

@@ -67,7 +67,7 @@ def decode(source: bytes | Path, rate: int) -> bytes:
     """Return the sound in a file (WAV, OGG, MP3, …) as PCM at `rate` (Hz). The channels are mixed.
 
     Raises:
-        PlatformError: The file is missing, holds no sound, or is damaged at its beginning.
+        PlatformError: The file is missing, contains no sound, or is damaged at its beginning.
     """
     av = _av()
     name = str(source) if isinstance(source, Path) else f"{len(source)} bytes"

@@ -27,7 +27,7 @@ class Spoken:
         text: The text.
         sound: PCM at `OUT_RATE`.
         reference: The same sound at `IN_RATE`, for the echo canceller.
-        words: The words in order.
+        words: The words in order, with the time at which each begins.
     """
 
     text: str
@@ -39,8 +39,8 @@ class Spoken:
 class Synthesiser:
     """The voice that the settings name. All methods block and are thread-safe.
 
-    A voice varies at random from sentence to sentence. So a repeated conversation sounds the same only if no other
-    conversation uses the voice's process.
+    A voice varies at random from sentence to sentence, but in the same way in each new process. So a repeated
+    conversation sounds the same only if no other conversation uses the voice's process.
 
     Args:
         settings: The settings of voiceio.

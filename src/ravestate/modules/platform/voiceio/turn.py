@@ -72,7 +72,7 @@ class Melody:
 
 @lru_cache(maxsize=1)
 def melody_of(file: Path) -> Melody:
-    """Return the model in a file. It stays loaded for the next conversation, because it stores no sounds.
+    """Return the model in a file. It stays loaded, and all conversations may share it, because it stores no sounds.
 
     Raises:
         PlatformError: The file cannot be loaded.
@@ -101,7 +101,7 @@ def wanted_silence(
 
 
 def completeness(text: str, language: str = "en") -> Literal["open", "doubtful", "complete"]:
-    """Judge by the last word whether a text is complete: open after an article, doubtful after an auxiliary verb.
+    """Judge by the last word whether a text is complete: open after an article, doubtful after a word such as *that*.
 
     Example:
         >>> completeness("I would like to go to the"), completeness("I think that"), completeness("Go home.")

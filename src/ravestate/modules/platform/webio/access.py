@@ -31,10 +31,10 @@ def is_local(host: str) -> bool:
 class Access:
     """Checks each request before the server answers it.
 
-    A page that only this machine can reach needs no token, so any site in this machine's browser could talk to it. Two
-    checks prevent that. Against DNS rebinding, a server without a token answers only to the names of this machine and
-    of the origins in the settings. And any server accepts requests of web sites only from its own origin and from the
-    origins in the settings. All methods expect header names in lower case.
+    A page that only this machine can reach needs no token. So any site that is open in this machine's browser could
+    talk to it. Two checks prevent that. Against DNS rebinding, a server without a token answers only requests for the
+    names of this machine and of the origins in the settings. And any server accepts requests of web sites only from its
+    own origin and from the origins in the settings. All methods expect header names in lower case.
     """
 
     def __init__(self, settings: Settings) -> None:
@@ -56,7 +56,10 @@ class Access:
         return None
 
     def refusal_of_board(self, headers: Mapping[str, str]) -> str | None:
-        """Return why a request may not reach the board (Raveboard); None if it may. Only the agent's own page may."""
+        """Return why a request may not reach the board (Raveboard); None if it may.
+
+        A page of another site may not reach the board.
+        """
         origin, host = headers.get("origin", "").lower(), headers.get("host", "").lower()
         if origin and not _is_own(origin, host):
             return (

@@ -32,7 +32,7 @@ PAGE = Path(__file__).parent / "page"
 """The folder of the built page: the output of ``npm run build`` in ``frontend/``."""
 
 MOST_LOGGED = 100
-"""The log names at most this many embedding sites, each only once, so that strangers cannot fill the log."""
+"""The log names at most this many sites that try to embed the page, each only once. So strangers cannot fill the log."""
 
 log = logging.getLogger("ravestate.webio")
 
@@ -78,11 +78,11 @@ def _settings_of(agent: Agent) -> Settings:
 
 
 class AccessMiddleware:
-    """Middleware that refuses requests without access, and adds headers that restrict scripts and frames.
+    """Middleware that refuses requests that fail the access check, and adds headers that restrict scripts and frames.
 
     The log names sites that try to embed the page without permission, because their visitors see only an empty frame.
-    One instance guards the whole application. A second one, with `inside=True`, guards the board (Raveboard), which no
-    other site may reach.
+    One instance guards the whole application. A second one, with `inside=True`, guards the board
+    (Raveboard), which only the page's own site may reach.
     """
 
     def __init__(self, app: ASGIApp, *, inside: bool = False) -> None:

@@ -31,7 +31,7 @@ class Window(Protocol):
 
 
 def sees(policy: Policy) -> bool:
-    """Return whether a rule of a policy uses `rawio.camera`, so that the agent can see."""
+    """Return whether the agent can see: whether a rule of its policy uses `rawio.camera`."""
     return uses(policy, rawio.camera)
 
 

@@ -119,7 +119,7 @@ class Bucket:
         return max(0.0, -self._level / self._rate)
 
     def take(self, now: float, amount: float = 1) -> bool:
-        """Count `amount` events if the limit allows them. Return whether it does."""
+        """Count `amount` events, unless they exceed the limit. Return whether they were counted."""
         self._fill(now)
         if self._level < amount:
             return False

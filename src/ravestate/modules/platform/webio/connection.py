@@ -68,11 +68,11 @@ class Connection:
         self._note = note
         self._privacy = privacy
         self._channel = Channel(socket, REPLIES)
-        self._stream: object = None  # the line and the stream of the last `Flush` to the client
-        self._listens: object = None  # the line of the last `Listening` to the client
+        self._stream: object = None  # the line, and the number of its stream, at the last `Flush` to the client
+        self._listens: object = None  # the line at the last `Listening` to the client
         self._taken: str | None = None  # why this window has lost the line, if the client does not know it yet
         self._announced: int | None = None  # the number of the last `Picture`, if its binary frame is still to come
-        self._look: object = None  # the camera and the number of the last `Look` to the client
+        self._look: object = None  # the camera, and the number of the last `Look` to the client
         self._faces: tuple[frames.Face, ...] = ()  # the faces of the last `Faces` to the client
         self._unseen: str | None = None  # why this window has lost the camera, if the client does not know it yet
 
@@ -208,7 +208,7 @@ class Connection:
         self._channel.reply(serialise(frame))
 
     async def _write(self, session: Session, last: int, agent: str) -> None:
-        """Send each change. The client already has the messages up to number `last`, and knows the agent as `agent`."""
+        """Send each change. The client has the messages up to number `last`, and shows the agent's name as `agent`."""
         shown, typing, paused, caption, marked = "", False, False, "", 0
         woken = self._channel.woken
         while True:
@@ -238,7 +238,7 @@ class Connection:
                 await self._send(frames.Caption(caption))
             marks, marked = session.history.marks_since(marked), session.history.marked
             for mark in marks:
-                if mark.n <= last:  # a message that is not sent yet will carry its own mark
+                if mark.n <= last:  # a message that is sent later says itself how much was heard
                     await self._send(mark)
             await self._write_sound(session)
             await self._write_sight(session)

@@ -10,7 +10,7 @@ from ravestate.errors import PlatformError
 from ravestate.modules._text import printable
 
 VERSION = 1
-"""The version of the protocol. Adding a type of frame or a field does not change it; any other change increases it."""
+"""The version of the protocol. A new type of frame or a new field keeps the version; any other change increases it."""
 
 LONGEST_NAME = 80
 """The maximum number of characters in a visitor's name."""
@@ -25,7 +25,7 @@ LONGEST_PICTURE = 100_000
 """The maximum number of bytes of a picture."""
 
 GREATEST = 2**53 - 1
-"""The greatest whole number that every JSON reader can hold."""
+"""The greatest whole number that every JSON reader represents exactly."""
 
 CLOSING_CODES = {
     "ended": 1000,
@@ -80,7 +80,7 @@ def name_of(text: str) -> str:
         >>> name_of(" Ada\\u202e\\nLovelace ")
         'Ada Lovelace'
     """
-    joiners = "\u200c\u200d"  # some languages and emoji need them
+    joiners = "\u200c\u200d"  # invisible characters that some languages and emoji need
     seen = "".join(c for c in printable(text) if c.isspace() or c.isprintable() or c in joiners)
     return " ".join(seen.split())
 

@@ -34,7 +34,7 @@ class Hello:
 
 @dataclass(frozen=True, slots=True)
 class Say:
-    """The visitor says something. A text that arrives twice under one `id` counts once."""
+    """The visitor says something. The server ignores a second `Say` with the same `id`."""
 
     id: Id
     text: Spoken
@@ -131,7 +131,7 @@ class Welcome:
         resumed: Whether the server has resumed the conversation that the client asked for.
         first: The number of the oldest message that the server keeps.
         agent: The agent's name.
-        inside: The address of the board for this conversation, relative to the page; None if there is no board.
+        inside: The address of the board (Raveboard) for this conversation, relative to the page; None if there is none.
         last: The number of the newest message; 0 before the first message.
         writing: Whether the server accepts `Writing` frames. Servers of the first releases did not.
         suggestions: A few things that the visitor could say first.
@@ -239,7 +239,7 @@ class Heard:
 
 @dataclass(frozen=True, slots=True)
 class Flush:
-    """An order to drop all unplayed sound. The sound after this frame is a new stream.
+    """An order to drop all unplayed sound. The sound after this frame belongs to a new stream.
 
     Attributes:
         n: The number of the new stream.

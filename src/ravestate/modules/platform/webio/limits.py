@@ -20,8 +20,8 @@ from websockets.exceptions import InvalidState
 TIMEOUT = 10.0  # a client may take this many seconds to send its request, and as many to read the answer
 
 LOWEST_RATE = 8 * 1024
-"""The lowest rate at which a client may send a request (bytes per second). A client that is more than `TIMEOUT` seconds
-behind is too slow."""
+"""The lowest rate at which a client may send a request (bytes per second). A client is too slow if it
+lags behind this rate by more than the bytes of `TIMEOUT` seconds."""
 
 STALL_TIMEOUT = 20.0  # the client of a WebSocket may leave data unread for this many seconds
 
@@ -53,7 +53,7 @@ class LimitedHTTP(H11Protocol):
         self._per_address = per_address
         self._most = most
         self._received = 0  # how many bytes came since the last check
-        self._waited: object = None  # the request (or None) at the last check, if the server then waited for the client
+        self._waited: object = None  # the request (or None) at the last check; `self` if it was in progress
         self._late: tuple[object, float] = (None, 0.0)  # a request, and by how many bytes it is behind the lowest rate
 
     def connection_made(self, transport: asyncio.Transport) -> None:  # type: ignore[override]  # as in the base class
@@ -98,7 +98,7 @@ class LimitedHTTP(H11Protocol):
         self.loop.call_later(TIMEOUT, self._check)
 
     def _is_late(self, request: RequestResponseCycle) -> bool:
-        """Return whether the client sends a request too slowly on average, apart from its waits for the server."""
+        """Return whether the client sends a request too slowly on average. Waits for the server do not count."""
         due = LOWEST_RATE * TIMEOUT
         behind = self._late[1] if self._late[0] is request else 0.0
         waits = self.flow.read_paused or not request.more_body

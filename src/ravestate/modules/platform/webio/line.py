@@ -28,8 +28,8 @@ CHUNK = rawio.OUT_RATE // 5 * SAMPLE
 """The maximum number of bytes of the agent's sound in one frame (0.2 s)."""
 
 AHEAD = rawio.OUT_RATE
-"""At most about this many unplayed samples (1 s) are in the browser window. `stop` drops them, so more would be
-wasted."""
+"""At most about this many unplayed samples (1 s) are in the browser window. The line sends no more in advance,
+because `stop` would drop it."""
 
 BETWEEN = 0.2
 """After a report of the browser window, `played` assumes for this many seconds that the sound keeps playing."""
@@ -54,7 +54,7 @@ class Window(Protocol):
 
 
 def hears(policy: Policy) -> bool:
-    """Return whether a rule of a policy uses `rawio.sound`, so that the agent can hear and speak."""
+    """Return whether the agent can hear and speak: whether a rule of its policy uses `rawio.sound`."""
     return uses(policy, rawio.sound)
 
 
@@ -95,7 +95,7 @@ class PageLine:
         """Whether a rule has begun to listen to the visitor. Before that, the rule may have to load its models."""
         self._waiting: deque[memoryview] = deque()
         self._queued = self._sent = self._reported = 0  # samples of the present stream
-        self._earlier = 0  # samples of earlier streams that were played
+        self._earlier = 0  # played samples of earlier streams
         self._most = 0  # the greatest result of `played` so far, in samples
         self._moved: float | None = None  # the time of the last report; None if this report showed no progress
         self._drained = asyncio.Event()

@@ -36,7 +36,7 @@ async def refuse(socket: WebSocket, answer: Response) -> None:
 class Pages:
     """An ASGI application that serves `LOGO` and the files of a folder, and ``index.html`` for the folder itself.
 
-    It reads the files only once.
+    It reads the files once, when it is created.
     """
 
     def __init__(self, folder: Path) -> None:

@@ -97,7 +97,7 @@ def sound_of(data: bytes) -> bytes:
     """Return the sound in a binary frame from a client.
 
     Raises:
-        ProtocolError: The frame does not hold whole samples, or holds too many.
+        ProtocolError: The frame is empty or too long, or ends in the middle of a sample.
     """
     if not 0 < len(data) <= LONGEST_SOUND or len(data) % 2:
         raise _malformed(

@@ -7,7 +7,7 @@ from ravestate.modules import interloc, rawio
 
 from .names import module, page
 
-SLOW = 0.3  # once `rs.pressure` has lasted this many seconds, the page shows that the agent is working
+SLOW = 0.3  # once a rule has waited for others for this many seconds, the page shows that the agent is working
 
 rawio.carry(module, page)
 

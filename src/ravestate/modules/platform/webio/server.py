@@ -74,7 +74,7 @@ class Server:
     def __init__(self, agent: Agent, routes: Iterable[BaseRoute] = (), inside: str | None = None) -> None:
         self.app = make_app(agent, routes, inside)
         """The application that the server serves."""
-        self._settings: Settings = agent.settings["webio"]  # type: ignore[assignment]  # the module's own
+        self._settings: Settings = agent.settings["webio"]  # type: ignore[assignment]  # the settings class of webio
         if self._settings.token is None and not is_local(self._settings.host):
             raise PlatformError(
                 f"webio: other machines can reach {self._settings.host!r}, so a token is needed: set "

@@ -85,8 +85,8 @@ class Session:
         self.hears = hears
         """Whether the agent can hear and speak."""
         self.line: PageLine | None = None
-        """The line to the visitor's microphone and loudspeaker. None if the microphone has been off for `LINGER`
-        seconds."""
+        """The line to the visitor's microphone and loudspeaker. None if the microphone was never on, or has been off for
+        `LINGER` seconds."""
         self.sees = sees
         """Whether the agent can see."""
         self.camera: PageCamera | None = None
@@ -111,7 +111,7 @@ class Session:
         return f"conversation {self.visitor}"
 
     async def live(self) -> None:
-        """Run the conversation until the visitor or the agent leaves, or the task is cancelled; then end it properly."""
+        """Run the conversation until the visitor or the agent leaves, or the task is cancelled. Then clean up."""
         try:
             async with self.context as context:
                 self._begun = True
@@ -303,7 +303,7 @@ class Session:
     def show_work(self, grace: float = 0.0) -> None:
         """After `grace` seconds, show that the agent is working, until no rule can write an answer any longer.
 
-        A filler such as "Let me think…" does not end this, because the rule that makes the answer is still running.
+        A filler such as "Let me think…" does not end this, because the rule for the answer itself is still running.
         """
         if self._following is None:
             self._following = asyncio.create_task(self._follow(grace))

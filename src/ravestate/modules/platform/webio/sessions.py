@@ -107,8 +107,8 @@ class Sessions:
     async def _make_room(self) -> None:
         """End one conversation without a window, if there is one.
 
-        Conversations whose visitors never spoke end first. Among equals, the one that has had no window for the longest
-        time ends first.
+        Conversations whose visitors never spoke end first. If several conversations are equal in this, the one
+        that has had no window for the longest time ends first.
         """
         abandoned = min(self._timers, key=lambda session: session.spoken, default=None)
         if abandoned is not None:
@@ -120,5 +120,5 @@ class Sessions:
         try:
             await session.live()
         finally:
-            self.leave(session, Ending.CANCELLED)  # no effect if the conversation has a reason for its end
+            self.leave(session, Ending.CANCELLED)  # no effect if another call of `leave` came first
             self._tasks.pop(session, None)

@@ -1,4 +1,4 @@
-"""The backend of speech synthesis by the library espeak-ng. `serve` runs this file."""
+"""The backend of speech synthesis by the library espeak-ng. ``_children/serve.py`` runs this file."""
 
 # pyright: basic
 from __future__ import annotations
@@ -9,8 +9,8 @@ from typing import Any
 
 # The values of constants in espeak-ng's speak_lib.h.
 SYNCHRONOUS, UTF8, CHARACTERS = 2, 1, 1
-RATE, PITCH, RANGE = 1, 3, 4  # numbers of parameters
-WORD, END = 1, 0  # kinds of events
+RATE, PITCH, RANGE = 1, 3, 4  # the codes of parameters
+WORD, END = 1, 0  # the codes of kinds of events
 NORMAL_RATE = 165  # words per minute
 
 
@@ -59,7 +59,7 @@ def load(config: dict[str, Any]) -> Any:
     if rate <= 0:
         raise OSError("espeak-ng has no data: install the package espeak-ng-data")
     voice = config["voice"].encode()
-    # Some voices have another name than the language, and the voice of a region may be missing.
+    # If no voice has this name, look for a voice of this language. It may have another name, or another region.
     if library.espeak_SetVoiceByName(voice) and library.espeak_SetVoiceByProperties(
         ctypes.byref(Voice(languages=voice))
     ):

@@ -1,4 +1,7 @@
-"""The backend of speech recognition with a grammar of commands, by pocketsphinx. `serve` runs this file."""
+"""The backend of speech recognition with a grammar of commands, by pocketsphinx.
+
+``_children/serve.py`` runs this file.
+"""
 
 # pyright: basic
 from __future__ import annotations

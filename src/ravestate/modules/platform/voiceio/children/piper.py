@@ -1,4 +1,7 @@
-"""The backend of speech synthesis by Piper. `serve` runs this file with the interpreter of Piper's environment."""
+"""The backend of speech synthesis by Piper.
+
+``_children/serve.py`` runs this file, with the interpreter of Piper's environment.
+"""
 
 # pyright: basic
 from __future__ import annotations

@@ -1,4 +1,4 @@
-"""The backend of speech recognition by faster-whisper. `serve` runs this file.
+"""The backend of speech recognition by faster-whisper. ``_children/serve.py`` runs this file.
 
 Whisper reads windows of 30 seconds, and its encoder takes as long for silence as for speech. So this backend does not
 fill the window: it adds only a few seconds of silence (`TAIL`) to a sound. A sentence then takes a fifth of the time. A
@@ -120,7 +120,8 @@ def load(config: dict[str, Any]) -> Any:
 def without_repetition(words: list[str], *, at_limit: bool) -> int:
     """Return how many words come before the repetition of a phrase. If nothing is repeated, count all words.
 
-    `at_limit` is whether the model wrote as many tokens as it may. Then even a short or partial repetition counts.
+    `at_limit` is whether the model wrote as many tokens as it may. If so, even a short or partial repetition ends the
+    count.
     """
     for length in range(1 if at_limit else PHRASE, len(words)):
         if all(words[at] == words[at - length] for at in range(length, len(words))):
