@@ -14,7 +14,7 @@ import type {
 import { type Spike, Trace } from "./trace";
 import { View } from "./view";
 
-const RECENT = 60; // causes in the list
+const RECENT = 60; // the maximum number of causes in the list
 
 /** A command that the server refused, the user's text, and the reason. */
 interface Refused {
@@ -106,11 +106,11 @@ export class Board {
   #asked: number | null = null; // The spike of the last "why not".
   #sent: { command: ClientFrame; typed: string } | null = null; // The last command.
   #lent = false; // Whether closing the rule returns to the newest cause.
-  #before: Address = {}; // The address before a recording.
+  #before: Address = {}; // The address that the board showed before a recording.
   #address: Address;
   #link: Link;
   #now = 0; // The context's time in the last frame (seconds).
-  #at = 0; // The time at which this frame came (milliseconds).
+  #at = 0; // The time at which the last frame came (milliseconds).
 
   /**
    * @param address the first conversation or recording
@@ -201,7 +201,7 @@ export class Board {
     const { refused } = this;
     if (refused?.command.type !== type) return null;
     this.refused = null;
-    this.trouble = ""; // the form shows it
+    this.trouble = ""; // the form shows the reason
     return refused as Refused & { command: { type: T } };
   }
 

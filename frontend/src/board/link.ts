@@ -9,7 +9,7 @@ export interface Address {
   visitor?: string;
   recording?: string;
   token?: string;
-  /** Whether the user chose the conversation on the board, so that the board does not follow newer ones. */
+  /** Whether the user chose the conversation on the board, so that the board does not follow newer conversations. */
   chosen?: boolean;
 }
 

@@ -52,7 +52,7 @@ export function colours(element: Element): Colours {
   };
 }
 
-/** Return the colour of a causal group. Neighbouring numbers have distant hues. */
+/** Return the colour of a causal group. Groups with neighbouring numbers have distant hues. */
 export function groupColour(group: number, dark: boolean): string {
   const hue = (group * 137.508 + 20) % 360;
   return dark ? `hsl(${hue.toFixed(0)} 62% 66%)` : `hsl(${hue.toFixed(0)} 62% 40%)`;
@@ -69,7 +69,7 @@ export interface Scene {
   height: number;
   colours: Colours;
   rule: string | null;
-  /** The emphasised spikes: the ancestors and descendants of the chosen one. */
+  /** The emphasised spikes: the chosen spike, its ancestors and its descendants. */
   kin: ReadonlySet<number>;
   spike: number | null;
 }
@@ -77,17 +77,17 @@ export interface Scene {
 const OUTSIDE = "";
 const FONT = '11px "Inter", system-ui, sans-serif';
 
-/** Return the lane of a spike: its rule's, or the first one for a spike from outside. */
+/** Return the lane of a spike: that of the rule that raised it, or the first lane for a spike from outside. */
 function laneOf(spike: Spike): string {
   return spike.rule;
 }
 
-/** Whether the context itself raised a spike (pressure, activity). It is drawn small, below the input from outside. */
+/** Whether the context itself raised a spike (pressure, activity). Such a spike is small, below the input. */
 function isOwn(spike: Spike): boolean {
   return spike.rule === OUTSIDE && spike.signal.startsWith("core:") && spike.signal !== "core:startup";
 }
 
-const OWN = 8; // pixels
+const OWN = 8; // pixels from the middle of the lane down to the dot of such a spike
 
 export function paint(context: CanvasRenderingContext2D, scene: Scene): void {
   const { view, width, height, colours: c } = scene;
@@ -171,7 +171,7 @@ function paintLane(context: CanvasRenderingContext2D, scene: Scene, lane: Lane, 
     if (bar.from > view.right) break;
     if (bar.to === null || bar.to < view.left) continue;
     const x = Math.round(view.x(bar.to, scene.width));
-    // One bar represents all that end within one pixel.
+    // One bar represents all bars that end within one pixel.
     if (drawn[bar.row] === x && view.x(bar.from, scene.width) > x - 1) continue;
     drawn[bar.row] = x;
     paintBar(context, scene, bar, top + 3 + bar.row * height, height);
@@ -417,10 +417,11 @@ function paintAncestry(context: CanvasRenderingContext2D, scene: Scene, places: 
   context.globalAlpha = 1;
 }
 
-/** The maximum number of lines to children of one signal. Beyond it, only the first and the last child have a line. */
+/** The maximum number of lines from a spike to its children of one signal. With more children, only the first and the
+ * last child have a line. */
 const CROWD = 6;
 
-/** Return the spikes without a line: those of each crowd, except the first and the last. */
+/** Return the spikes without a line: the children of each crowd (see `CROWD`), except the first and the last. */
 function crowds(trace: Trace, kin: ReadonlySet<number>): Set<number> {
   const found = new Set<number>();
   for (const id of kin) {
@@ -520,7 +521,7 @@ export function at(
     return seen.length > 0 ? { seen } : {};
   }
   const middle = AXIS + index * LANE - scene.scroll + LANE / 2;
-  // The context's own dots are below the others.
+  // The dots of spikes that the context itself raised are below the other dots.
   const below = name === OUTSIDE && y > middle + OWN / 2;
   const away = (spike: Spike) => Math.abs(spike.time - time) + (isOwn(spike) === below ? 0 : reach);
   let best: Spike | undefined;

@@ -107,11 +107,11 @@ export interface ClauseView {
   terms: Term[];
   /** The number of the clause's pathways; at most 256, even if the clause has more. */
   pathways: number;
-  /** The number of the clause's predicates. Each predicate adds ln 2. */
+  /** The number of the clause's predicates. Each predicate adds ln 2 to the utility. */
   predicates: number;
   /** The sum of all addends. */
   utility: number;
-  /** The effective utility (utility × weight) of a rule that has recovered. */
+  /** The effective utility (utility × weight) when the cooldown of the rule is over. */
   base: number;
 }
 
@@ -397,9 +397,9 @@ export interface Waits {
 export interface Rendered {
   /** The value as JSON, or its `repr`. */
   text: string;
-  /** Whether the text is JSON for the whole value, which a user may edit and write back. */
+  /** Whether the text is the whole value as JSON. A user may then edit the text and write it back. */
   json?: boolean;
-  /** Whether the text is only the beginning. */
+  /** Whether the text is only the beginning of a longer text. */
   cut?: boolean;
 }
 
@@ -438,7 +438,7 @@ export interface Hello {
   token?: string;
 }
 
-/** Stop the context's clock, perform the next step on a stopped clock, or start the clock again. */
+/** Stop the context's clock, perform the agent's next step while the clock is stopped, or start the clock again. */
 export interface Clock {
   type: "pause" | "step" | "resume";
 }
@@ -498,7 +498,7 @@ export interface Why {
   spike: number;
 }
 
-/** A request for a `Drawing` in which only the modules `unfolded` show their rules. */
+/** A request for a `Drawing`: the modules `unfolded` show their rules; each other module is one node. */
 export interface Unfold {
   type: "diagram";
   unfolded: string[];
@@ -660,7 +660,7 @@ export interface DrawnEdge {
   box: [number, number, number, number] | null;
 }
 
-/** The diagram, in which only the modules `unfolded` show their rules. Lengths are in pixels. */
+/** The diagram: the modules `unfolded` show their rules; each other module is one node. Lengths are in pixels. */
 export interface Drawing {
   type: "diagram";
   unfolded: string[];

@@ -8,7 +8,7 @@ export type State = "gathering" | "complete" | "waiting" | "running";
 export interface Phase {
   state: State;
   from: number;
-  /** The rules that it waits for, and the latest end of the wait (seconds). */
+  /** The rules that the activation waits for, and the latest end of the wait (seconds). */
   waits?: string[];
   until?: number | null;
 }
@@ -25,7 +25,7 @@ export interface Bar {
   /** The outcome of its run (`done`, `resigned`, ...), or the reason why it gave up its spikes (`age`, `consumed`, ...). */
   outcome: string;
   reason: string;
-  /** The rule that answered instead or resigned, and the number of its run; 0 if that is unknown. */
+  /** The rule that answered instead or resigned, and the number of its run (0 if the number is unknown). */
   by: string;
   run: number;
   holds: Set<number>;
@@ -96,7 +96,7 @@ export class Trace {
     if (this.records.length > this.kept * 1.25) this.#forget();
   }
 
-  /** Compare with the live activations on the server, and end the bars whose end was missed. */
+  /** Compare the bars with the live activations on the server, and end the bars whose end was missed. */
   reconcile(activations: Alive[], now: number): void {
     const alive = new Set(activations.map((activation) => activation.id));
     for (const lane of this.lanes.values()) {
@@ -145,7 +145,7 @@ export class Trace {
     return root;
   }
 
-  /** Return the rule that raised the input of the run that answered instead; empty if none did, or if that is unknown. */
+  /** Return the rule that raised the input of the run that answered instead; empty if unknown, or if no rule did. */
   behind(bar: Bar): string {
     const groups = new Set(bar.spikes.map((id) => this.#groupOf(id)));
     for (const id of this.#bars.get(bar.run)?.spikes ?? []) {
@@ -175,7 +175,7 @@ export class Trace {
 
   /**
    * Return the spikes from outside, newest first. A write of a slot raises several signals of one causal group: the last
-   * one represents them.
+   * spike represents them.
    */
   inputs(most: number, counts: (spike: Spike) => boolean = () => true): Spike[] {
     const found: Spike[] = [];
@@ -189,7 +189,7 @@ export class Trace {
     return found;
   }
 
-  /** Return the spikes of the same write as a spike, itself included. */
+  /** Return all spikes of the write that raised a spike, including this spike. */
   siblings(spike: Spike): Spike[] {
     const found: Spike[] = [];
     for (let i = from(this.spikes, spike.time, ({ time }) => time); i < this.spikes.length; i++) {

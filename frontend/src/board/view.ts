@@ -1,6 +1,6 @@
 /**
- * The visible part of the timeline: `span` seconds from `left` on. While the view follows, its right edge is the
- * present.
+ * The visible part of the timeline: `span` seconds from `left` on. While the view follows the clock, its right edge is
+ * the present.
  */
 export class View {
   left = 0;

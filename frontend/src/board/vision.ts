@@ -8,7 +8,7 @@ export type Seen = typeof FACES | typeof BODY;
 /** Seconds without a face, a body or an activity after which a new stretch begins. */
 const LOST = 1.5;
 
-/** The greatest number of faces beside each other in the lane. */
+/** The maximum number of rows of faces in the lane. */
 export const ROWS = 3;
 
 /** A stretch of time (seconds) in which something is seen. */
@@ -16,7 +16,7 @@ export interface Stretch {
   kind: "face" | "body" | "activity";
   from: number;
   to: number;
-  /** The person's name or the activity's; empty for an unknown face, and for a body. */
+  /** The name of the person or of the activity; empty for an unknown face, and for a body. */
   text: string;
   /** The distance to the nearest face in memory, or the confidence of the activity, as the trace has it. */
   figure: string;

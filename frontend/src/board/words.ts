@@ -22,7 +22,7 @@ export function cause(spike: Spike, policy: Description): string {
 /** The slot of the visitor's words. */
 export const SAID = "rawio:input";
 
-/** Return a typed value: JSON, or else the text itself. */
+/** Return the value of a text that a user typed: the JSON value, or else the text itself. */
 export function typed(text: string): unknown {
   try {
     return JSON.parse(text);
@@ -40,7 +40,7 @@ export function gaveUp(bar: Bar, trace: Trace): string {
   return `${behind === "" ? "" : `${behind} → `}${bar.by} answered it`;
 }
 
-/** Return what is wrong with a typed value that looks like JSON; empty if nothing is. */
+/** Return what is wrong with a user's text that looks like JSON; empty if nothing is wrong. */
 export function slip(text: string): string {
   if (!/^\s*[[{"]/.test(text) || typed(text) !== text) return "";
   return `This looks like JSON but is not valid: ${text.slice(0, 40)} – to write it as text, put it in quotes.`;

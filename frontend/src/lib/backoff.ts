@@ -1,4 +1,4 @@
-/** Waiting times between attempts: longer each time, with a random share. */
+/** Waiting times between attempts to connect: longer each time, with a random share. */
 export class Backoff {
   #attempts = 0;
 

@@ -3,17 +3,17 @@ import { parse } from "./frames";
 import { CLOSING_CODES, type ClientFrame, type ServerFrame } from "./protocol";
 
 export type Status =
-  /** The first attempt. */
+  /** The page tries to connect for the first time. */
   | "connecting"
   /** The server has welcomed us. */
   | "open"
-  /** The connection stands, but the server does not answer. */
+  /** The connection is open, but the server does not answer. */
   | "silent"
   /** There is no connection; the next attempt follows. */
   | "lost"
   /** The server has ended the conversation. */
   | "ended"
-  /** The server asks for a token, or for another one. */
+  /** The server asks for a token, or the token is wrong. */
   | "token"
   /** The server does not understand this page. */
   | "refused";
@@ -42,7 +42,7 @@ export interface Options {
 
 const OPEN = 1;
 
-/** The maximum number of bytes that wait to be sent. Beyond it, sound is dropped, because late sound is useless. */
+/** If more than this many bytes wait to be sent, sound is dropped, because late sound is useless. */
 const MOST_WAITING = 64_000;
 
 /** Frames that the server does not answer. */

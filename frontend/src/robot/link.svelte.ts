@@ -1,7 +1,7 @@
 // The connection to the stand-in robot. If it breaks, the page connects again.
 import { ASLEEP, type Looks } from "./face.ts";
 
-const AGAIN = 1000; // milliseconds
+const AGAIN = 1000; // milliseconds until the next attempt
 
 export class Link {
   looks = $state<Looks>(ASLEEP);

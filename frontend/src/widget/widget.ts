@@ -65,7 +65,7 @@ function embed(page: URL, options: DOMStringMap): void {
 
   function show(open: boolean): void {
     if (open && frame === null) {
-      frame = document.createElement("iframe"); // only now, so that other visitors do not connect
+      frame = document.createElement("iframe"); // only now, so that visitors who never open the chat do not connect
       frame.title = options.title ?? "Talk with us";
       frame.allow = "microphone; camera; autoplay";
       frame.referrerPolicy = "origin"; // so that the server's log can name a site that may not embed the chat

@@ -1,6 +1,7 @@
 """The explanation of why a rule did not fire, as data (law L25). `ravestate.board.why_not` derives it from a trace.
 
-An explanation is about one rule and one spike. "For the cause" means: in the causal group of this spike.
+An explanation is about one rule and one spike. "For the cause" means: in the causal group of this spike. An
+*attempt* is one activation of the rule.
 """
 
 from __future__ import annotations
@@ -48,10 +49,13 @@ class Moment:
 
 @dataclass(frozen=True, slots=True)
 class WhyNot:
-    """How far a rule got on the way to a run for an input, and what stopped the rule.
+    """How far a rule got on the way to a run for the cause of a spike, and what stopped the rule.
 
     Attributes:
-        rule, spike, signal, time: The rule and the spike in question; the time is the spike's birth (seconds).
+        rule: The name of the rule.
+        spike: The number of the spike.
+        signal: The signal of the spike.
+        time: The time of the spike's birth (seconds).
         verdict: The furthest step that an attempt of the rule reached.
         words: The reason for the verdict, as text.
         at: The time at which the verdict was decided (seconds); None while it is undecided.

@@ -27,8 +27,8 @@ PAGE = Path(__file__).parent / "page"
 INSIDE = "board/"  # the board's address, relative to the chat page
 
 LARGEST = 64 * 1024 * 1024
-"""The maximum number of bytes in an uploaded recording: twice the page's largest export, which has some 125,000 records
-of 270 bytes."""
+"""The maximum number of bytes in an uploaded recording: twice the largest file that the page exports, which has some
+125,000 records of 270 bytes."""
 
 AT_ONCE = 4  # the maximum number of uploads at the same time
 LONGEST = 300.0  # the maximum number of seconds that an upload may take

@@ -58,9 +58,9 @@ class ClauseView:
         condition: The clause as text.
         terms: The addends of the pathway with the least utility. This pathway decides the clause's utility.
         pathways: The number of the clause's pathways; at most 256, even if the clause has more.
-        predicates: The number of the clause's predicates. Each predicate adds ln 2.
+        predicates: The number of the clause's predicates. Each predicate adds ln 2 to the utility.
         utility: The sum of all addends.
-        base: The effective utility (utility × weight) of a rule that has recovered.
+        base: The effective utility (utility × weight) when the cooldown of the rule is over.
     """
 
     condition: str

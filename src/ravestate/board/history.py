@@ -25,8 +25,8 @@ class Attempt:
     """One activation of a rule, as far as the trace shows it.
 
     `lacks` has the signals for which the attempt has no spike. If the attempt loses its last spikes in one instant,
-    `lacks` stays as it was before that instant: it then names the signals that were missing at the end. `complete` is
-    the time at which the attempt took its last missing spike (seconds); None while a spike is missing. `started` is
+    `lacks` stays as it was before that instant: it then names the signals that were missing before the loss. `complete`
+    is the time at which the attempt took its last missing spike (seconds); None while a spike is missing. `started` is
     None until the run starts. `settled` is None until the run ends.
     """
 
@@ -42,7 +42,7 @@ class Attempt:
     started: t.Started | None = None
     settled: t.Settled | None = None
     _missing: tuple[str, ...] = ()  # the signals for which it has no spike now
-    _before: tuple[str, ...] = ()  # the signals that `_missing` had before the losses of this instant
+    _before: tuple[str, ...] = ()  # the value of `_missing` before the latest losses
     _holds: set[int] = field(default_factory=set[int])  # the numbers of the spikes that it holds now
 
     @property
@@ -64,7 +64,7 @@ class Attempt:
 
     @property
     def spikes(self) -> Iterable[int]:
-        """The numbers of the spikes with which the attempt's run began; without a run, of all spikes it took."""
+        """The numbers of the spikes with which the attempt's run began; without a run, of all spikes that it took."""
         return [held.spike for held in self.held] if self.started is None else self.started.spikes
 
     def take(self, record: t.Held) -> None:
@@ -96,6 +96,7 @@ class History:
     """
 
     def __init__(self, records: Iterable[t.Record], spike: int) -> None:
+        # "By spike", "by run" and "by activation": the key is a number. "By rule" and "by slot": the key is a name.
         self.born: dict[int, t.Born] = {}  # by spike
         self.attempts: dict[str, list[Attempt]] = {}  # by rule
         self.passed: dict[str, list[t.Passed]] = {}  # by rule
@@ -152,9 +153,9 @@ class History:
     def answered(self, hears: Mapping[str, Sequence[Collection[str]]]) -> Attempt | None:
         """Return the first run of a rule in `hears` that answered the group; None if none did.
 
-        A run answers the group if it fires and consumes one of the group's spikes. For each rule, `hears` has one
-        collection for each clause: the signals that the clause consumes. A detached constraint consumes no spike (law
-        L19).
+        A run answers the group if it counts as done (`fired`) and consumes one of the group's spikes. For each rule,
+        `hears` has one collection for each clause: the signals that the clause consumes. A detached constraint consumes
+        no spike (law L19).
         """
 
         def is_taken(attempt: Attempt, signals: Collection[str]) -> bool:
@@ -243,7 +244,7 @@ class History:
 
 
 class Rivals:
-    """Writes the parts of an explanation that are about a rule's rivals, or about the rule that answered first."""
+    """Writes what an explanation says about a rule's rivals (it waits for them), or about the rule that answered first."""
 
     def __init__(self, history: History, description: Description) -> None:
         self._history = history

@@ -31,7 +31,7 @@ if TYPE_CHECKING:
     from ravestate.modules.platform.webio.session import Session
     from ravestate.modules.platform.webio.sessions import Sessions
 
-FRAME = 0.05  # the minimum number of seconds between two frames of records
+FRAME = 0.05  # the minimum number of seconds between two frames (messages) of records
 
 SHARE = 0.015
 """The share of the event loop's time that one inspector may use. After a slow frame, the inspector waits longer, to
@@ -42,7 +42,8 @@ MOST = 800  # the maximum number of records in a frame; a longer frame would del
 BACKLOG = 20_000  # the maximum number of past records that a new inspector gets
 
 LAG = 25_000
-"""An inspector may lag behind by this many records. If it lags further behind, the server skips to the present."""
+"""An inspector may lag behind by this many records. If it lags further behind, the server skips to the newest
+records."""
 
 BURST, SPEED = 60, 30.0
 """The rate limit for a page's commands: `BURST` commands at once, and then `SPEED` commands per second."""
@@ -81,7 +82,7 @@ class Inspector:
         """Do nothing when the conversation changes, because the records show the change."""
 
     async def run(self) -> None:
-        """Serve the page until either side closes."""
+        """Serve the page until either side closes the connection."""
         await self._channel.carry(self._serve)
 
     async def _serve(self) -> None:
@@ -263,7 +264,7 @@ class Inspector:
 
 
 def drawing(diagram: Diagram, unfolded: Sequence[str]) -> protocol.Drawing:
-    """Return the diagram with its layout. Only the modules `unfolded` show their rules. 500 nodes take about 1 s."""
+    """Return the diagram with its layout. Only the modules `unfolded` show their rules. 500 nodes need about 1 s."""
     folded = fold(diagram, frozenset(unfolded))
     sizes = {node.id: node_size(node) for node in folded.nodes}
     layout = lay_out(folded, sizes, [label_size(edge.label) for edge in folded.edges])

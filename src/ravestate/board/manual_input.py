@@ -74,7 +74,7 @@ def _check_holds(slot: Slot[Any], holds: object) -> None:
 
 
 def _is_expressible(takes: Any) -> bool:
-    """Return whether JSON can express some value of these types; None means any type."""
+    """Return whether JSON can express at least one value of these types; None means any type."""
     return takes is None or any(isinstance(sample, takes) for sample in SAMPLES)
 
 

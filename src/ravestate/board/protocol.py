@@ -1,5 +1,7 @@
 """The board's protocol, version 1: JSON frames over a WebSocket between a board's page and its server.
 
+A board shows a conversation or a recording (a recorded trace).
+
 ``docs/reference/board-protocol.md`` describes each frame. ``tools/protocol.py`` writes the page's TypeScript from this file.
 """
 
@@ -69,7 +71,7 @@ class Hello(_Frame):
 
 
 class Clock(_Frame):
-    """Stop the context's clock, perform the next step on a stopped clock, or start the clock again."""
+    """Stop the context's clock, perform the agent's next step while the clock is stopped, or start the clock again."""
 
     type: Literal["pause", "step", "resume"]
 
@@ -119,7 +121,7 @@ class Why(_Frame):
 
 
 class Unfold(_Frame):
-    """A request for a `Drawing` in which only the modules `unfolded` show their rules."""
+    """A request for a `Drawing`: the modules `unfolded` show their rules; each other module is one node."""
 
     type: Literal["diagram"]
     unfolded: list[Name]
@@ -297,7 +299,7 @@ class DrawnEdge:
 
 @dataclass(frozen=True)
 class Drawing:
-    """The diagram, in which only the modules `unfolded` show their rules. Lengths are in pixels."""
+    """The diagram: the modules `unfolded` show their rules; each other module is one node. Lengths are in pixels."""
 
     unfolded: list[str]
     width: float

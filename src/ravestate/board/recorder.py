@@ -1,11 +1,11 @@
-"""Recorders keep the records of contexts for inspectors (one serves each open board), with bounded memory and cost.
+"""Recorders keep the records of contexts for inspectors (each serves one open board), with bounded memory and cost.
 
 Inspectors have no queues. Records are numbered, and each inspector reads the records that it lacks. A slow inspector
 misses records that are already deleted, and delays nothing else.
 
-Making records is expensive for a busy agent, so each recorder has a rate limit. It allows a burst, then a steady rate,
-and a higher rate while the process is idle. Beyond the limit, a recorder stops listening for a moment. Without
-other observers, the engine then makes no records. A `Gap` says how many spikes the recorder missed.
+Making records is expensive for a busy agent, so each recorder has a rate limit. It allows a burst (many records at
+once), then a steady rate, and a higher rate while the process is idle. Beyond the limit, a recorder stops listening for
+a moment. Without other observers, the engine then makes no records. A `Gap` says how many spikes the recorder missed.
 
 All recorders of an agent share one limit on the number of records. If the total exceeds this limit, the recorders with
 the most records are cut to the same length.
@@ -32,7 +32,7 @@ KEPT = 100_000  # the maximum number of records of one context
 IN_ALL = 500_000
 """The maximum number of records of all contexts together. Each record takes about 136 bytes plus its payload."""
 
-BATCH = 100  # a recorder calls `grown` after this many records
+BATCH = 100  # a recorder calls its callback `grown` each time after this many records
 BURST = 20_000  # the maximum number of records in one burst
 RATE = 2_000  # a recorder takes at most this many records per second after a burst, in a process that is always busy
 

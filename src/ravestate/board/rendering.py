@@ -26,8 +26,8 @@ class Rendered:
 
     Attributes:
         text: The value as JSON, or its ``repr``.
-        json: Whether the text is JSON for the whole value, which a user may edit and write back.
-        cut: Whether the text is only the beginning.
+        json: Whether the text is the whole value as JSON. A user may then edit the text and write it back.
+        cut: Whether the text is only the beginning of a longer text.
     """
 
     text: str
@@ -76,7 +76,7 @@ def render(value: object, most: int = 2000) -> Rendered:
 
 def not_json(value: object, most: int = 2000) -> bool:
     """Return whether JSON cannot express a value. This checks only the first `most` characters of its JSON."""
-    if isinstance(value, (int, float)):  # even infinity, because JSON has other numbers to write in its place
+    if isinstance(value, (int, float)):  # even infinity: a user may write another number, which JSON can express
         return False
     try:
         _start(_json(value, 0), most)

@@ -1,4 +1,4 @@
-"""The ``repr`` of a value in chunks. A caller who reads only some chunks of a huge value saves the rest of the work."""
+"""The ``repr`` of a value in chunks. A caller that reads only some chunks of a huge value saves work."""
 
 from __future__ import annotations
 
@@ -25,15 +25,15 @@ BUILT_IN: dict[Any, Any] = {kind.__repr__: kind for kind in _WALKS}
 
 _BRACKETS: dict[Any, str] = {list: "[]", deque: "[]", tuple: "()"}
 
-_Items = Iterable[tuple[Iterable[str], object]]  # the items of a container, each with its prefix
+_Items = Iterable[tuple[Iterable[str], object]]  # the items of a container, each after a prefix such as a key
 
 
 def repr_chunks(value: object, around: tuple[int, ...] = ()) -> Iterator[str]:
     """Yield the ``repr`` of a value: in many chunks for built-in containers and dataclasses, in one for other values.
 
     Long and deep values are cut. If a value contains itself, ``...`` stands for the inner value: `around` has the `id`
-    of each container around the value. Containers without brackets of their own read like ``deque([1, 2])`` or
-    ``Counter({'a': 1})``. A subclass of a built-in container shows its items; the subclass's methods are not called.
+    of each container around the value. Containers other than lists, tuples, sets and dicts show their class, as in
+    ``deque([1, 2])``. A subclass of a built-in container shows its items; the subclass's methods are not called.
     """
     made_by: Any = type(value).__repr__
     if made_by in TEXTS:
@@ -58,7 +58,7 @@ def repr_chunks(value: object, around: tuple[int, ...] = ()) -> Iterator[str]:
 
 
 def _parts(value: Any, made_by: Any, around: tuple[int, ...]) -> tuple[str, _Items, str] | None:
-    """Return the parts of the ``repr`` that the method `made_by` makes; None if it has no parts, or unknown parts."""
+    """Return the parts of the ``repr`` that the method `made_by` makes; None without parts, or if they are unknown."""
     own = cast("type[Any]", type(value))
     kind = BUILT_IN.get(made_by)
     if kind is not None:
@@ -91,7 +91,7 @@ def _named(items: Iterable[tuple[str, object]]) -> _Items:
 
 
 def _fields(own: type[Any], made_by: Any) -> list[str]:
-    """Return the names of the fields in a dataclass's `__repr__`. That method may come from a base class."""
+    """Return the names of the fields that a dataclass's ``__repr__``, `made_by`, shows. A base class may define it."""
     maker: Any = next(base for base in own.__mro__ if vars(base).get("__repr__") is made_by)
     return [field.name for field in dataclasses.fields(maker) if field.repr]
 

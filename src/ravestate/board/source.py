@@ -1,4 +1,4 @@
-"""The sources of an inspector's data: a running conversation or a recording."""
+"""The sources of an inspector's data: a running conversation or a recording. An inspector serves one open board."""
 
 from __future__ import annotations
 
@@ -177,7 +177,7 @@ async def outside_of_any_task(function: Callable[[], T]) -> T:
 
 
 def gates_of(policy: Policy) -> Opens:
-    """Return a function that evaluates the slot predicates of a policy (see `Opens`)."""
+    """Return a function that says whether a slot predicate of a policy is true for a value (see `Opens`)."""
     guards = {(rule.name, clause.number): clause.guards for rule in policy.rule_plans for clause in rule.clauses}
 
     def opens(rule: str, clause: int, number: int, value: Any) -> bool | None:

@@ -33,20 +33,20 @@ from ravestate.policy.policy import Policy
 FORMAT = "ravestate-trace"
 
 MOST_VALUES = 6_000_000
-"""The maximum number of commas and opening brackets in a file: a file with more of them would fill the memory. Records
-of 64 MB have about four million commas and brackets."""
+"""The maximum number of commas and opening brackets in a file: a file with more of them would fill the memory. A
+recording of 64 MB, the maximum size of an upload, has about four million commas and brackets."""
 
 LONGEST = 120  # the maximum number of seconds that reading a file may take
 
 MOST_MEMORY = 2 * 1024**3
 """The maximum address space of the process that reads an uploaded file, in bytes. A valid recording of 64 MB needs a
-third of this memory; a file with millions of faulty values would need several times as much."""
+third of this memory; a file with millions of faulty values would need several times this memory."""
 
 TOO_MUCH = f"reading it takes more than {MOST_MEMORY // 1024**3} GB of memory"
 
 CHUNK = 1000
-"""The number of records in a message between processes. It is small, because unpacking a message stops all other
-threads."""
+"""The number of records in a message between processes. The number is small, because unpacking a message stops all
+other threads."""
 
 SURROGATE = re.compile(r"\\u[dD][89a-fA-F]")  # a pattern for one half of a surrogate pair, as JSON writes it
 
@@ -68,14 +68,14 @@ KEPT = 4  # the maximum number of uploaded recordings that a server keeps; the s
 
 
 class Recordings:
-    """The recordings of a server: the uploaded ones, with names that nobody can guess, and `first`, without a name."""
+    """The recordings of a server: `first`, which has no name, and uploaded recordings, whose names nobody can guess."""
 
     def __init__(self, first: Recording | None = None) -> None:
         self._first = first
         self._uploaded: OrderedDict[str, Recording] = OrderedDict()
 
     def get(self, name: str | None) -> Recording | None:
-        """Return the recording with this name; without a name, the first recording. Return None if there is none."""
+        """Return the recording with this name; without a name, `first`. Return None if it does not exist."""
         return self._first if name is None else self._uploaded.get(name)
 
     def put(self, recording: Recording) -> str:
@@ -181,7 +181,8 @@ def _parsed(text: str) -> Any:
 
 def _limit_memory() -> None:
     """Limit the memory of this process, if the operating system supports that."""
-    with contextlib.suppress(ImportError, ValueError, OSError):  # Windows; a lower limit is set already; macOS
+    # The causes of the errors, in this order: Windows; a lower limit is set already; macOS.
+    with contextlib.suppress(ImportError, ValueError, OSError):
         import resource
 
         resource.setrlimit(resource.RLIMIT_AS, (MOST_MEMORY, MOST_MEMORY))

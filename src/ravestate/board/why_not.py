@@ -1,4 +1,4 @@
-"""Explanations of why a rule did not fire for an input (law L25). They need only the trace.
+"""Explanations of why a rule did not fire for the cause of a spike (law L25). They need the trace and the policy.
 
 A user asks about one spike and one rule. The answer is about the spike's causal group: all spikes with the same cause.
 An *attempt* is an activation of the rule with spikes of this group (``history.py``). The answer names the furthest step
@@ -74,7 +74,8 @@ class _Inquiry:
         self.description = description
         self.opens = opens
         self.rivals = Rivals(history, description)
-        self.asked: list[str] = []  # the rules that are being explained; so a circle of causes ends
+        # The rules that are being explained. None of them is explained again inside, so a circle of causes ends.
+        self.asked: list[str] = []
         self._judged: dict[str, Judgement] = {}
 
     def answer(self, rule: RuleView, whole: bool) -> WhyNot:
@@ -226,7 +227,7 @@ class _Inquiry:
         """Return whether a slot predicate was false when an attempt lost its spikes.
 
         If the trace does not show the slot's value, the predicate counts as false in two cases: the attempt lost its
-        spikes without an answer by another rule, or its spikes were old enough but it did not wait.
+        spikes without an answer by another rule, or the attempt did not wait although its spikes were old enough.
         """
         if not rule.clauses[attempt.clause].gates:
             return False

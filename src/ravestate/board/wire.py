@@ -23,7 +23,7 @@ VERSION = 1
 other change increases it."""
 
 PAYLOAD = 400  # the maximum number of characters of a payload in a record
-VALUE = 2000  # the maximum number of characters of a slot's value in a record or a `State`
+VALUE = 2000  # the maximum number of characters of a slot's value
 
 KINDS: dict[str, type[Any]] = {kind.__name__.lower(): kind for kind in (*get_args(Record), Gap)}
 """Name of a kind of record → its class."""
@@ -33,7 +33,7 @@ RENDERED = {"payload": PAYLOAD, "value": VALUE}
 
 
 def _shape(name: str, kind: type[Any]) -> Any:
-    """Return the type (a `TypedDict`) of the plain data of records of the class `kind`."""
+    """Return a `TypedDict`: the type that records of the class `kind` have as plain data."""
     hints = get_type_hints(kind)
     fields: dict[str, Any] = {"kind": Literal[name]}
     for field in dataclasses.fields(kind):

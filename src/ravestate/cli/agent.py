@@ -113,7 +113,7 @@ def check_voice(agent: AgentSpec) -> None:
 
 
 def listing() -> str:
-    """Return a list of the built-in modules, each with the first line of its docstring, without importing any."""
+    """Return a list of the built-in modules, each with the first line of its docstring. Import none of them."""
     width = min(shutil.get_terminal_size().columns, 120) - 2
     lines = ["built-in modules:"]
     for name, folder in sorted(BUILT_IN.items()):

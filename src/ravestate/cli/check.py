@@ -61,7 +61,7 @@ def run(options: argparse.Namespace) -> int:
 
 
 def _doubtful_examples(policy: Policy) -> list[Finding]:
-    """Return a finding for each example of an intent that equals, or resembles, an example of another intent."""
+    """Return a finding for each example that fits another intent (kind of utterance) as well as its own intent."""
     if "nlp" not in (module.name for module in policy.modules):
         return []
     from ravestate.modules.meta.nlp.intent import doubtful_examples, intents_of

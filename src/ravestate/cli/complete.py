@@ -1,4 +1,4 @@
-"""The complete text agent: all modules of a chat except the platform."""
+"""The complete text agent: all modules of a chat except the platform (the console or the web page)."""
 
 from __future__ import annotations
 
@@ -128,7 +128,7 @@ def _leave_out_absent(agent: AgentSpec, command: str) -> None:
 
 
 def choose_small_talk(agent: AgentSpec, command: str) -> str:
-    """Choose the language model of `wildtalk`, print its name in one line, and set it in the agent's settings.
+    """Choose the language model for small talk (`wildtalk`), print its name in one line, and set it in the settings.
 
     If there is no language model, return a sentence that says how to get one; otherwise, return an empty text.
     """

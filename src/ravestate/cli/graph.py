@@ -13,7 +13,7 @@ SUFFIXES = {".svg": "svg", ".dot": "dot", ".gv": "dot", ".mmd": "mermaid", ".mer
 """The ending of an output file's name → the format of the diagram."""
 
 LARGE = 40
-"""If an agent has more rules than this, its modules fold automatically: the text would be too small for a screen."""
+"""If an agent has more rules than this, each module becomes one box: else the text would be too small for a screen."""
 
 
 def add_arguments(parser: argparse.ArgumentParser) -> None:

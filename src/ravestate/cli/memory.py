@@ -42,8 +42,8 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
 def _add_place(parser: argparse.ArgumentParser, *, later: bool = False) -> None:
     """Add the options that choose a memory.
 
-    With `later`, the options come after an action. An option that is missing there keeps its value from before the
-    action.
+    With `later`, the options come after an action, such as ``list``. An option that is missing there keeps its value
+    from before the action.
     """
     default = argparse.SUPPRESS if later else None
     parser.add_argument(

@@ -19,7 +19,7 @@ if TYPE_CHECKING:
     from ravestate.modules.meta.nlp.analysis import Analysis
 
 SHOWN = 5
-"""The maximum number of intents in the table."""
+"""The maximum number of intents (kinds of utterance) in the table."""
 PATIENCE = 60.0
 """Wait this many seconds for a language model. The limit is high, because no user waits for an answer."""
 
@@ -104,7 +104,7 @@ def _designed(options: argparse.Namespace) -> Matcher | None:
 
 
 def _scores(designed: Matcher | None, seen: Analysis) -> dict[str, float]:
-    """Return the best scores of the agent's own intents, highest first. Their names have the module before a colon."""
+    """Return the best scores of the agent's own intents (named ``module:intent``), highest first."""
     ranked = (
         [match for one in designed.ranked_all(seen.sentences) for match in one if ":" in match.name] if designed else []
     )

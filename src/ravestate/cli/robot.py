@@ -46,7 +46,7 @@ def run(options: argparse.Namespace) -> int:
     if behind:
         complete.leave_out_absent(chosen, options.command)
         complete.choose_small_talk(chosen, options.command)
-        chosen.settings.setdefault("emotion", {}).setdefault("emoji", False)  # the robot has a face
+        chosen.settings.setdefault("emotion", {}).setdefault("emoji", False)  # the robot's face shows the feelings
     try:
         asyncio.run(_serve(options, chosen, alone))
     except ModuleNotFoundError as error:

@@ -177,7 +177,10 @@ def _finds(graph: dict[str, Any], topic: str) -> bool:
 
 
 async def _look_again(node: Node, topic: str) -> dict[str, Any]:
-    """Return the graph as soon as it has the topic, or after `LOOKS` attempts, which take at least six seconds."""
+    """Return the network's topics, services and actions (its graph) as soon as the topic is among them.
+
+    Return the graph without the topic after `LOOKS` attempts, which take at least six seconds.
+    """
     graph: dict[str, Any] = {}
     for _ in range(LOOKS):
         graph = await node.graph()

@@ -15,7 +15,7 @@ PARAMETERS = "ros__parameters"
 SIMULATED = "use_sim_time"
 """Every node has this parameter, which says whether time is simulated. It is also a setting of `ros1` and `ros2`."""
 OTHERS = ("qos_overrides", "start_type_description_service")
-"""ROS 2 gives every node parameters whose names begin like this. They are not settings."""
+"""ROS 2 gives every node parameters whose names begin with one of these words. They are not settings."""
 
 Found = list[tuple[str, Any]]
 

@@ -124,7 +124,7 @@ def _who(options: argparse.Namespace, settings: dict[str, Any]) -> int:
 
 
 def _name(people: Any, graph: Any, vector: Vector, threshold: float) -> tuple[str, float | None]:
-    """Return the name that belongs to a vector, and the distance to the nearest face in memory."""
+    """Return the name of the person to whom a face's vector belongs, and the distance to the nearest face in memory."""
     found = people.nearest(graph, vector, threshold)
     if found is not None:
         return _shown(found.person), found.distance
@@ -182,7 +182,7 @@ def _learn(options: argparse.Namespace, settings: dict[str, Any]) -> int:
 
 
 def _person(memory: Memory, name: str) -> Node:
-    """Return the person of this name in memory, or a new one."""
+    """Return the person of this name in memory, or a new person of this name."""
     from ravestate.modules.meta.ontology import Node
 
     found = [one for one in memory.find("Person").result() if str(one.get("name", "")).casefold() == name.casefold()]

@@ -1,9 +1,9 @@
 """Acyclic graphs: a topological order, and a small set of edges whose reversal makes a graph acyclic.
 
-The heuristic of Eades, Lin and Smyth (1993) runs within each strongly connected component. It orders the vertices from
-both ends at the same time. Then it reverses the edges that point backwards in this order. There are two refinements.
-The heuristic prefers to reverse weak edges, whose weight is below `STRONG`. At a tie, it takes the vertex with the
-lowest number, so that the result depends only on the input.
+The heuristic of Eades, Lin and Smyth (1993) runs within each strongly connected component. It fills an order of the
+vertices from both ends at the same time. Then it reverses the edges that point backwards in this order. There are two
+refinements. The heuristic prefers to reverse weak edges, whose weight is below `STRONG`. At a tie, it takes the vertex
+with the lowest index, so that the result depends only on the input.
 """
 
 from __future__ import annotations
@@ -48,7 +48,7 @@ def topological(after: Sequence[Sequence[int]]) -> list[int]:
 
 
 def _peel(count: int, edges: Sequence[tuple[int, int, int]]) -> list[int]:
-    """Return each vertex's position in an order in which few edges point backwards. Most of those edges are weak."""
+    """Return each vertex's position in an order in which few edges point backwards. Most of these edges are weak."""
     after: list[list[tuple[int, int]]] = [[] for _ in range(count)]
     before: list[list[tuple[int, int]]] = [[] for _ in range(count)]
     out = [0] * count
@@ -78,14 +78,15 @@ def _peel(count: int, edges: Sequence[tuple[int, int, int]]) -> list[int]:
     return place
 
 
-_LAST = (0, 2)  # vertices of these ranks (see `_urgency`) get the last free number, other vertices get the first one
+_LAST = (0, 2)  # vertices of these ranks (see `_urgency`) get the last free position, other vertices the first one
 
 
 def _urgency(out: int, into: int) -> tuple[int, int]:
     """Return a vertex's sort key (rank, gain).
 
     The ranks are: 0 for a sink (no outgoing edges); 1 for a source (no incoming edges); 2 for a sink if
-    weak edges are ignored; 3 for a source if weak edges are ignored; 4 for any other vertex.
+    weak edges are ignored; 3 for a source if weak edges are ignored; 4 for any other vertex. Within a rank, the gain
+    compares the vertices by the weights of their edges. The vertex with the least key gets its position next.
     """
     if out == 0:
         return (0, 0)

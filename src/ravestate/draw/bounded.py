@@ -3,7 +3,7 @@
 If edges are as short as possible, layers may be few and crowded, e.g. if all the neighbours of a vertex share one layer.
 If the picture is then tall and narrow, the number of vertices in a layer gets a bound. Further vertices move to a later
 layer, as in the scheduling of Coffman and Graham (1972). A vertex is ready when all its predecessors have a layer. Among
-the ready vertices, those of the latest original layer come first, so that chains continue.
+the ready vertices, those that had the latest layer before come first, so that chains continue.
 """
 
 from __future__ import annotations
@@ -26,7 +26,7 @@ _SPLITS = 16  # the maximum number of parts into which the largest layer is spli
 def fit_to_screen(ranks: Sequence[int], arcs: Sequence[Arc], extent: Callable[[Sequence[int]], Extent]) -> list[int]:
     """Return layers that suit a landscape screen: `ranks`, or bounded layers if the picture would be too tall.
 
-    The function `extent` estimates the size of the picture for given layers.
+    `ranks` has the layer of each vertex. The function `extent` estimates the size of the picture for given layers.
     """
     best, (width, height) = list(ranks), extent(ranks)
     if height <= SCREEN or width >= _TALLEST * height:

@@ -21,7 +21,8 @@ _AHEAD = 0.15  # weight of neighbours that a sweep has not reached yet, relative
 def assign_coordinates(graph: LayeredGraph, room: float | None = None) -> list[float]:
     """Return the y coordinate of each vertex's middle in pixels. The graph must have ordered layers and placed ports.
 
-    The picture is at most `room` pixels high, unless its largest layer needs more.
+    Ports are the points where lines touch a vertex. The picture is at most `room` pixels high, unless its largest layer
+    needs more.
     """
     gaps: list[list[float]] = []
     middle = [0.0] * len(graph.layer)
@@ -62,9 +63,9 @@ def assign_coordinates(graph: LayeredGraph, room: float | None = None) -> list[f
 
 
 def _isotonic(wishes: Sequence[float], weights: Sequence[float], gaps: Sequence[float], half: float) -> list[float]:
-    """Return places that keep the gaps and are nearest to `wishes` (weighted least squares).
+    """Return coordinates that keep the gaps and are nearest to `wishes` (weighted least squares).
 
-    The places are between -`half` and `half` (pixels). `half` is half of the height that the picture may have.
+    The coordinates are between -`half` and `half` (pixels). `half` is half of the height that the picture may have.
     """
     pools: list[tuple[float, float, int]] = []  # (mean, weight, number of members)
     offsets: list[float] = []

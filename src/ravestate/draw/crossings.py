@@ -111,7 +111,7 @@ def _sweep(
 def _by_barycentre(layer: list[int], neighbours: Sequence[Sequence[int]], place: list[int], flip: bool) -> None:
     """Sort the vertices that have neighbours by the mean place of their neighbours; the other vertices stay.
 
-    With `flip`, vertices with equal means are reversed.
+    With `flip`, vertices with equal means get the reverse order.
     """
     moving = [(sum(place[w] for w in neighbours[v]) / len(neighbours[v]), v) for v in layer if neighbours[v]]
     if flip:
@@ -148,5 +148,6 @@ def _transpose(
 
 def _gain(upper: Sequence[int], lower: Sequence[int]) -> int:
     """Return how many crossings a swap of two vertices saves, given the sorted places of their neighbours."""
-    # Lines to the ends in `lower` before `end` cross now. Lines to the ends after `end` would cross after the swap.
+    # Now, the line to `end` crosses the lines to places in `lower` before `end`. After the swap, it would cross the
+    # lines to places after `end`.
     return sum(bisect_left(lower, end) - len(lower) + bisect_right(lower, end) for end in upper)

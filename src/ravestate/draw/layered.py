@@ -1,9 +1,9 @@
 """A proper layered graph: each segment joins two neighbouring layers.
 
-Vertices are the nodes of the diagram, the labels of its edges, and dummies where a long edge passes a layer. A line
-begins and ends at a port. Edges of one kind share one port on each side of a node. Long edges that begin (or end) at
-one port share their dummies, too. So a node with many edges has one line with branches (a hyperedge) instead of many
-parallel lines.
+Vertices are the nodes of the diagram, the labels of its edges, and dummies (points where a long edge passes a layer). A
+line begins and ends at a port (a point on a vertex). Edges of one kind share one port on each side of a node. Long
+edges that begin (or end) at one port share their dummies, too. So a node with many edges has one line with branches (a
+hyperedge) instead of many parallel lines.
 """
 
 from __future__ import annotations
@@ -30,7 +30,7 @@ _LEAST = 3.0  # minimum pixels between ports; with less room, ports coincide, bu
 
 @dataclass(frozen=True, slots=True)
 class Link:
-    """An edge of the acyclic graph, from the lower to the higher layer; `is_reversed` if its arrow points back."""
+    """An edge of the acyclic graph, from a lower to a higher layer; `is_reversed` if its arrow points the other way."""
 
     low: int
     high: int
@@ -59,7 +59,7 @@ Chain = list[int]
 
 @dataclass(slots=True)
 class LayeredGraph:
-    """The graph: vertices by number, each layer from top to bottom, ports, and segments between ports."""
+    """The graph: its vertices by index, ports, segments between ports, and the order of each layer."""
 
     layer: list[int] = field(default_factory=list[int])
     kind: list[VertexKind] = field(default_factory=list[VertexKind])
@@ -194,7 +194,7 @@ class _Builder:
 
 
 def place_ports(graph: LayeredGraph) -> None:
-    """Place the ports of each side in the order of the vertices that they lead to. Call this after `order` is final."""
+    """Place the ports on each side of a node in the order of the vertices to which they lead. `order` must be final."""
     place = places(graph.order)
     leads: list[list[int]] = [[] for _ in graph.ports]
     for low, high in graph.segments:

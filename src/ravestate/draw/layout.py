@@ -33,7 +33,7 @@ _GAP = 32.0  # pixels between two layers if all lines between them are straight
 _TURN = 2.0  # average pixels that each port adds to a gap, for the turns of its lines
 _BETWEEN = 36.0  # pixels between components
 _ASPECT = 1.6  # desired width : height of packed components
-_STRENGTH: dict[EdgeKind, int] = {  # kind → the cost of reversing such an edge
+_STRENGTH: dict[EdgeKind, int] = {  # kind → the cost of reversing an edge of this kind
     "writes": 3 * STRONG,
     "emits": 4 * STRONG,
     "condition": 4 * STRONG,

@@ -33,7 +33,7 @@ class Legend:
 def legend(diagram: Diagram, x: float, y: float, room: float, prefix: str) -> Legend:
     """Return the legend of a diagram, in rows of at most `room` pixels.
 
-    Its upper left corner is at (x, y). The ids of the arrowheads begin with `prefix` (see `heads`).
+    The legend's upper left corner is at (x, y) (pixels). The ids of the arrowheads begin with `prefix` (see `heads`).
     """
     nodes, edges = used(diagram)
     plain: list[NodeKind] = [kind for kind in nodes if kind not in JUNCTIONS]

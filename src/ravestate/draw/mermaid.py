@@ -25,7 +25,7 @@ _ARROWS: dict[EdgeKind, str] = {
 _WORDS: dict[EdgeKind, str] = {"reads": "reads", "emits_detached": "detached", "condition_detached": "detached"}
 """Kind of edge → words on its line: Mermaid has too few arrows to tell these kinds apart without colour."""
 
-_MOST_EDGES = 500  # Mermaid's default limit
+_MOST_EDGES = 500  # the maximum number of edges that Mermaid draws by default
 _PLAIN = " _:,×≥≤–…"  # characters that need no escape, besides letters and digits
 
 

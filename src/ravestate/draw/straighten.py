@@ -1,7 +1,7 @@
 """Remove small steps from lines that are almost straight.
 
-Aligned vertices move together, and only into free space. They move if this straightens a line and makes no other line
-much longer.
+Vertices that a straight line joins move together, and only into free space. They move if this straightens a line and
+makes no other line much longer.
 """
 
 from __future__ import annotations

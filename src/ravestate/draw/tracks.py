@@ -24,7 +24,7 @@ _TOUCHING = 4 * STRONG  # the cost of overlapping stubs, far above the cost of a
 
 @dataclass(slots=True)
 class Tracks:
-    """The number of tracks, and the track of each segment; None for a segment without a turn.
+    """The number of tracks, and the index of each segment's track; None for a segment without a turn.
 
     Such a segment is horizontal. Rarely, it is slanted instead, because no order of the nets keeps their stubs apart.
     """
@@ -113,7 +113,7 @@ def _nets(segments: Sequence[Segment]) -> list[_Net]:
 
 
 def _offending(a: _Net, b: _Net, segments: Sequence[Segment], joined: set[tuple[int, int]]) -> set[int]:
-    """Return the segments to slant if `a` cannot be left of `b`.
+    """Return the segments to slant if net `a` cannot be to the left of net `b`.
 
     If two stubs overlap, slant the segments of the stub that has fewer segments.
     """

@@ -14,7 +14,7 @@ export interface Listener {
 export interface Devices {
   /** Let the microphone's sound through, or silence instead. */
   talk: (on: boolean) => void;
-  /** Drop the sound that has not been played; the sound after it is stream `n`. */
+  /** Drop the sound that has not been played; the sound after this call is stream `n`. */
   flush: (n: number) => void;
   play: (sound: ArrayBuffer) => void;
   /** Let the browser play sound; to be called while the visitor presses something. */

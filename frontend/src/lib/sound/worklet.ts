@@ -47,7 +47,7 @@ class Capture extends AudioWorkletProcessor {
 /** Seconds between two reports of the play-out position. */
 const REPORT = 0.05;
 
-/** Plays the agent's sound, and reports the position. */
+/** Plays the agent's sound, and reports the play-out position (how much of the sound was played). */
 class Playout extends AudioWorkletProcessor {
   #buffer = new JitterBuffer(sampleRate);
   #stream = -1;

@@ -1,4 +1,7 @@
-"""Compute the features of a normalised movement. The features do not depend on tempo, or on when the movement starts."""
+"""Compute the features of a movement, the numbers that describe it, after `skeleton_of` has normalised the movement.
+
+The features do not depend on tempo, or on when the movement starts.
+"""
 
 from __future__ import annotations
 

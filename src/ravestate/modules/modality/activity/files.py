@@ -1,4 +1,4 @@
-"""Read and write movements: files with the landmarks of a body over time, and the folder of taught activities.
+"""Read and write movements: files with the landmarks (points) of a body over time, and the folder of taught activities.
 
 A file of landmarks is a numpy archive (``.npz``) with ``times`` (T,) in seconds and ``points`` (T, 33, 4), see `Pose`.
 The optional ``name`` is the activity's name. The folder of taught activities has one such file for each demonstration,

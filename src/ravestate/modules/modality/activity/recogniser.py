@@ -1,9 +1,10 @@
 """The recogniser: it compares the features of a movement with the features of known activities.
 
 Each activity is a Gaussian with its own mean and standard deviation for each feature. All activities share one
-correlation of features. A movement belongs to the activity that makes it most probable. The movement is unknown if it
-is too far from that activity's mean. It is also unknown if one of the starter set's *other* movements, such as standing,
-is more probable. The recogniser tries the movement and its mirror image.
+correlation matrix of the features. A movement belongs to the activity that makes it most probable. The movement is
+unknown if it is too far from that activity's mean. It is also unknown if one of the *other* movements, such as
+standing, is more probable. The starter set, which comes with the module, has activities and *other* movements. The
+recogniser tries the movement and its mirror image.
 
 A new activity needs few demonstrations, because they determine only its mean. Its deviations are computed from those of
 an average activity.
@@ -39,12 +40,12 @@ LIMIT = 4.0
 """The maximum distance of a movement from the taught activity to which it belongs (mean squared deviation of the
 features)."""
 REMEMBERED = 64
-"""The number of inverse matrices to keep. Each set of visible features needs one matrix."""
+"""The maximum number of inverse matrices to keep. Each set of visible features needs one matrix."""
 RUNNERS_UP = 3
 """The maximum number of next most likely names."""
 FAR = 3.0
-"""An activity farther away than this many times the limit is not among the next most likely names, because it looks too
-different."""
+"""An activity farther from the movement than this many times the limit (see `LIMIT`) is not among the next most likely
+names: it looks too different."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -82,7 +83,7 @@ class Starter:
     usual: NDArray[Any]
     """(features,): the deviations of an average activity."""
     correlation: NDArray[Any]
-    """(features, features): the correlation of features."""
+    """(features, features): the correlation matrix of the features."""
     limit: float
     """A movement farther than this from an activity does not belong to it."""
     heat: float

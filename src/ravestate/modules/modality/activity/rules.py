@@ -55,7 +55,7 @@ def load(ctx: rs.RuleContext) -> rs.Resign | None:
     background=True,
 )
 async def follow(ctx: rs.RuleContext) -> None:
-    """Add a pose to the film. Ask for a recognition every `step` seconds."""
+    """Add a pose to the film (the poses of the last seconds). Ask for a recognition every `step` seconds."""
     settings: Settings = ctx.settings
     pose = ctx.payload(posed)
     before = ctx[movement]

@@ -1,4 +1,7 @@
-"""Normalise a movement: from any camera, make a skeleton of unit size that faces the viewer, at a fixed frame rate."""
+"""Normalise a movement that any camera has seen: make a skeleton of unit size that faces the viewer.
+
+The skeleton has a fixed frame rate.
+"""
 
 from __future__ import annotations
 
@@ -17,7 +20,7 @@ RATE = 20.0
 VISIBLE = 0.5
 """A landmark with a lower visibility than this counts as invisible."""
 PRESENT = 0.5
-"""The minimum share of frames in which a joint must be visible."""
+"""A joint is used only if it is visible in at least this share of the frames."""
 FEWEST = 8
 """The minimum number of poses in a movement."""
 SHORTEST = 1.0

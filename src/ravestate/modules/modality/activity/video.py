@@ -1,4 +1,4 @@
-"""Find the poses in a video file, with the vision worker of `visionio`."""
+"""Find the poses in a video file, with the vision worker of `visionio`, a separate process."""
 
 from __future__ import annotations
 

@@ -11,7 +11,7 @@ from .skeleton import SHORTEST
 def windows(poses: Sequence[Pose], length: float, step: float) -> Iterator[tuple[Pose, ...]]:
     """Yield windows of a movement. A movement that is shorter than a window is one window.
 
-    A later window is left out if its poses span less than `SHORTEST` seconds.
+    A window after the first one is left out if its poses span less than `SHORTEST` seconds.
 
     Args:
         poses: The poses, in the order of their times.

@@ -18,7 +18,7 @@ def by_chance(sentences: Sequence[str], likely: Mapping[Feeling, float], rng: ra
     """Return a spontaneous feeling in response to the sentences of an utterance, or None.
 
     Args:
-        sentences: The user's words, in the normal form.
+        sentences: The user's sentences, corrected (in the normal form of `ravestate.language.normal`).
         likely: The probability of each feeling on its occasion. The occasions are, in this order: a goodbye, a greeting
             or thanks, words about the agent, a question. If there are several, only the first of this list counts.
         rng: The random number generator.

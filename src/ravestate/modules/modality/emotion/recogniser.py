@@ -31,8 +31,8 @@ SPOILERS = frozenset({"failure", "anger", "worry"})
 failed"."""
 SPOILED = frozenset({"joy", "affection", "astonishing"})
 CLEAR = 0.65
-"""The minimum confidence of a class of `SPOILED`. It is high, because a smile at neutral words annoys users more than
-no smile at good news."""
+"""The minimum confidence of a class of `SPOILED`. The minimum is high, because a smile at neutral words annoys users
+more than no smile at good news."""
 
 # Emoji and smileys in the user's words, and the agent's feeling for them.
 PICTURES: tuple[tuple[Feeling, re.Pattern[str]], ...] = (
@@ -45,7 +45,7 @@ PICTURES: tuple[tuple[Feeling, re.Pattern[str]], ...] = (
 def recognise(text: str, names: Collection[str] = ()) -> Feeling | None:
     """Return the feeling that fits `text` (English), or None.
 
-    The first text with a sentence that equals no example loads the sentence model.
+    The first text with a sentence that equals no example in ``feelings.yaml`` loads the sentence model.
 
     Args:
         text: The user's words; the first 2000 characters count.

@@ -28,7 +28,7 @@ SIGNALS: dict[Feeling, rs.Signal[None]] = {
 
 @module.rule(when=rs.startup, background=True)
 def learn(ctx: rs.RuleContext) -> None:
-    """Load the matchers in the background, before the first words."""
+    """Load the matchers, which compare sentences with examples, in the background, before the first words."""
     wait_for_prompt()
     try:
         for name in ("acts", "feelings"):

@@ -25,7 +25,7 @@ class Recognised(str):
 
 
 agent: rs.Slot[str] = module.slot("agent", "Ravestate", type=str, input=True)
-"""The agent's name. `agentqa` writes it, from the agent's life file."""
+"""The agent's name. `agentqa` writes it, from the file of facts about the agent."""
 
 users: rs.Collection[Any] = module.collection("users", input=True)
 """The users who are present. The platform chooses a key for each user. The item is the user's name, or None while the

@@ -43,7 +43,7 @@ class Line(Protocol):
 
     @property
     def played(self) -> float:
-        """How many seconds of sound the loudspeaker has played since the line was opened, without pauses."""
+        """How many seconds of sound the loudspeaker has played since the line was opened. Pauses do not count."""
         ...
 
     async def drained(self) -> None:

@@ -102,12 +102,13 @@ async def listen(ctx: rs.RuleContext) -> None:
 REPLIES = (verbaliser.intent, rawio.output, visitors)
 """The slots that a reply writes. `rawio.output` is one of them, so that no other rule answers the same words."""
 PRIORITY = 20.0
-"""The weight of the reply to a yes, above small talk. The reply to a no has more weight, and forgetting has most."""
+"""The weight of the reply to a yes, greater than that of small talk. The replies to a no and to *forget my face* have
+even more weight."""
 
 
 @module.rule(when=agreed, reads=ontology.memory, writes=REPLIES, detached=True, weight=PRIORITY)
 async def store(ctx: rs.RuleContext) -> None:
-    """Store the vectors of a person who agrees."""
+    """Store the face vectors (the numbers that identify the face) of a person who agrees."""
     settings: Settings = ctx.settings
     visitor, memory = ctx[visitors].get(ctx.payload(agreed)), ctx[ontology.memory]
     reply, name = "no_memory", visitor.name if visitor else None
@@ -178,7 +179,7 @@ async def forget_person(ctx: rs.RuleContext) -> None:
 
 @module.rule(when=left.max_age(None).detached(), reads=ontology.memory, background=True)
 async def refresh(ctx: rs.RuleContext) -> rs.Resign | None:
-    """After a visit, store a new vector of a person who has agreed earlier, because faces change."""
+    """After a visit, store a new face vector of a person who has agreed earlier, because faces change."""
     settings: Settings = ctx.settings
     visitor, memory = ctx.payload(left), ctx[ontology.memory]
     vectors = visitor.good(max(0.7, settings.quality))[:1]

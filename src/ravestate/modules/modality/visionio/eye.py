@@ -24,13 +24,13 @@ WORKER = Backend(
     lambda reason: f". {MEND}" if "module" in reason else "",
 )
 PATIENCE = 30.0
-"""A look may take this many seconds."""
+"""A look may take at most this many seconds."""
 
 _numbers = itertools.count(1)
 
 
 class Eye:
-    """One stream of pictures in the vision worker, which all agents of this process share.
+    """One stream of pictures in the vision worker. All agents of this process share the worker.
 
     Args:
         python: The interpreter of the worker; by default an interpreter that has the packages.
@@ -72,7 +72,7 @@ class Eye:
 
         Args:
             want: ``faces``, ``pose`` or both.
-            request: The known tracks; see the docstring of the worker.
+            request: The known tracks (faces that the agent follows); see the docstring of the worker.
             at: The time of the wanted picture in a video or a folder (seconds since the beginning).
             frame: The picture; None to look at the open camera.
 

@@ -38,7 +38,7 @@ class Settings(rs.Settings):
     """The share of the time that looking may take. So on a slow machine, the agent looks at fewer pictures."""
 
     threshold: Annotated[float, Field(gt=0, le=2)] = 0.55
-    """The maximum Euclidean distance of two vectors of the same person."""
+    """The maximum Euclidean distance of two vectors of the same person. A vector describes a face as 128 numbers."""
     sure: Annotated[int, Field(ge=1, le=20)] = 3
     """The agent decides whose face it sees when this many vectors in a row agree."""
     quality: Share = 0.3
@@ -46,9 +46,9 @@ class Settings(rs.Settings):
     gone_after: Seconds = 4.0
     """A person counts as gone if the agent has not seen their face for this many seconds."""
     history: Annotated[int, Field(ge=10)] = 100
-    """The number of faces that ``visionio.history`` keeps."""
+    """The maximum number of faces that ``visionio.history`` keeps."""
     most: Annotated[int, Field(ge=1)] = 8
-    """The number of vectors that memory keeps for each person."""
+    """The maximum number of vectors that memory keeps for each person."""
     ask: bool = True
     """Whether the agent asks people who give their names if it may remember their faces. It keeps a face only after a
     yes, or after *remember my face*."""

@@ -1,4 +1,7 @@
-"""Functions that store, find and forget faces in memory. Memory has faces only of people who agreed."""
+"""Functions that store, find and forget faces in memory. Memory has faces only of people who agreed.
+
+A stored face is a vector: 128 numbers that identify the person.
+"""
 
 from __future__ import annotations
 

@@ -1,4 +1,7 @@
-"""The rules that look at pictures and follow faces. They tell other modules who comes and who leaves."""
+"""The rules that look at pictures and follow faces. They tell other modules who comes and who leaves.
+
+A vector describes a face as 128 numbers. A track follows one face from picture to picture.
+"""
 
 from __future__ import annotations
 
@@ -30,7 +33,7 @@ from .tracks import Sighting, Tracks
 from .visitors import Decision, Visitor, at, decide, gone, of_track, whose
 
 KEY = "visionio-"
-"""The keys in ``interloc.users`` begin with this text for people whom no platform has added."""
+"""For people whom no platform has added, the keys in ``interloc.users`` begin with this text."""
 
 
 # ------------------------------------------------------------------------------------ looking

@@ -1,4 +1,7 @@
-"""Tracks. A track follows a face from picture to picture, and decides when the face needs a new vector."""
+"""Tracks. A track follows a face from picture to picture, and decides when the face needs a new vector.
+
+A vector describes a face as 128 numbers.
+"""
 
 from __future__ import annotations
 
@@ -13,7 +16,8 @@ from .face import Box, Look, Vector
 LOST = 1.5
 """If a face is not found for this many seconds, its track ends."""
 REFRESH = 3.0
-"""A known face gets a new vector after this many seconds, because two people may have changed places."""
+"""After enough vectors of a face agree, the face gets a new vector at this interval (seconds), because two people may
+have changed places."""
 TRIES = 10
 """After this many vectors, a badly visible face gets only one new vector per second."""
 THOROUGH = 1.0
@@ -32,7 +36,8 @@ class Track:
         quality: The visibility of the face for this vector.
         encoded: The time of this vector.
         tries: The number of vectors so far.
-        person, distance: The nearest person in memory, and the distance; None if nobody is near enough.
+        person: The nearest person in memory; None if nobody is near enough.
+        distance: The distance to this person's nearest stored vector; None without a person.
         agreed: The number of good vectors in a row that agree about the person.
     """
 
@@ -59,7 +64,8 @@ class Track:
         """Note the person to whom the newest vector belongs.
 
         Args:
-            person, distance: The nearest person and the distance; None if nobody is near enough.
+            person: The nearest person in memory; None if nobody is near enough.
+            distance: The distance to this person's nearest stored vector; None without a person.
             quality: The minimum quality of a vector that counts.
         """
         same = (self.person and self.person.id) == (person and person.id)

@@ -14,7 +14,7 @@ from .face import FaceVec, Vector
 WAIT = 2.5
 """A face that has been badly visible for this many seconds counts as a stranger's face."""
 KEPT = 8
-"""The number of vectors to keep from a visit."""
+"""The maximum number of vectors (descriptions of a face as 128 numbers) to keep from a visit."""
 ALIKE = 0.15
 """A vector that is at most this far from a kept vector shows nothing new."""
 

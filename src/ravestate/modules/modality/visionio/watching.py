@@ -25,7 +25,7 @@ Sleep = Callable[[float], Awaitable[None]]
 
 
 class Watch:
-    """A camera that the agent watches: a camera of the worker, or of a platform.
+    """A camera that the agent watches: a camera that the vision worker opens, or the camera of a platform.
 
     Args:
         settings: The settings of visionio.

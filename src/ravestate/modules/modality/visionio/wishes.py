@@ -17,7 +17,7 @@ _ABOUT = re.compile(r"\b(?:faces?|looks?)\b", re.IGNORECASE)
 def wish_of(text: str) -> Literal["forget", "remember", ""]:
     """Return whether an utterance asks the agent to ``forget`` or to ``remember`` the user's face, or neither ("").
 
-    Without the sentence model, only sentences that equal an example count.
+    Without the sentence model, only sentences that equal an example in ``wishes.yaml`` count.
 
     Example:
         >>> wish_of("forget my face"), wish_of("I forget where I live")

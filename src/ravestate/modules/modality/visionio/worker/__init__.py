@@ -18,7 +18,7 @@ The last line is there only for a look at a camera. ``track`` is null for a new 
 if the look has computed no vector for the face. An answer has ``fault`` if a camera or a picture has a fault. If there
 is no new picture, the answer has no field ``picture``.
 
-`Faces.find` explains two more fields of a look: ``thorough`` and ``most``.
+`Faces.find` explains the field ``known`` of a look, and two more fields: ``thorough`` and ``most``.
 
 The bytes of a look are an encoded picture (JPEG, PNG), or raw pixels. For raw pixels, the record has
 ``"shape": [height, width]``. It may have ``"encoding"`` (default ``rgb8``) and ``"step"`` (the length of a row in

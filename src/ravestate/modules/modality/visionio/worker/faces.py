@@ -31,7 +31,8 @@ FACE = 110
 
 
 class Faces:
-    """The models: MediaPipe's detector if it is installed, dlib's detector, landmarks and vectors.
+    """The models: MediaPipe's detector if it is installed, dlib's detector, and dlib's models for landmarks and
+    vectors.
 
     Raises:
         ImportError: A package is missing.
@@ -60,8 +61,9 @@ class Faces:
 
         Args:
             picture: The picture.
-            header: The request. ``known`` has the tracks with their last boxes. A ``fresh`` track needs no vector. If
-                ``thorough`` is 1 or 2, also look for small faces. ``most`` is the maximum number of vectors.
+            header: The request. ``known`` has the tracks (faces that the agent follows) with their last boxes. A
+                ``fresh`` track needs no vector. If ``thorough`` is 1 or 2, also look for small faces. ``most`` is the
+                maximum number of vectors to compute.
         """
         boxes = self._boxes(picture, thorough=int(header.get("thorough", 0)))
         boxes.sort(key=lambda box: -box[2] * box[3])
