@@ -28,7 +28,9 @@ class _BlockingFinder(MetaPathFinder):
 
 @contextmanager
 def blocked(*names: str) -> Generator[None]:
-    """Raise an error if this thread imports a package in `names` for the first time. Other threads can import it.
+    """In the ``with`` block, raise an error if this thread imports a package in `names` that is not imported yet.
+
+    Other threads can import the package.
 
     Example:
         >>> with blocked("this"):

@@ -49,7 +49,8 @@ _WE = Phrase("we", person="I")
 
 @dataclass(frozen=True, slots=True)
 class _Unknown:
-    """The part that a question asks for: its question word, the top word of its phrase, and its kind."""
+    """The *unknown*: the part that a question asks for. `top` is the word of its phrase that depends directly on the
+    verb."""
 
     word: Word
     top: Word
@@ -67,7 +68,7 @@ class Clause:
         self.verbs = list(dict.fromkeys([*self.chain[::-1], verb]))
         """All verbs of the clause; the last verb comes first."""
         self._clauses = clauses
-        """All clauses of the tree by the index of each of their verbs."""
+        """Index of a verb → its clause, for all clauses of the tree."""
 
     @classmethod
     def all_in(cls, tree: Tree) -> list[Clause]:
@@ -150,7 +151,8 @@ class Clause:
 
     @cached_property
     def passive(self) -> Word | None:
-        """The auxiliary of a passive or of a participle used as an adjective, such as *are* in *are they married*."""
+        """The auxiliary of a passive, or of a participle used as an adjective, such as *are* in *are they married*; else
+        None."""
         first, head = self.chain[0], self.head_clause
         auxiliaries = self.tree.children(first, "auxpass") if lemma_of(first) != "be" else []
         if first.low in FEELINGS:
@@ -180,7 +182,7 @@ class Clause:
 
     @cached_property
     def _agents(self) -> list[Word]:
-        """The agents of a passive, after *by*."""
+        """The nouns after *by* in a passive: *my brother*, in *eaten by my brother*."""
         return [word for word in self.tree.children_of(self._by, "pobj") if not self._asks_at(word)]
 
     @cached_property
@@ -240,7 +242,7 @@ class Clause:
     # ------------------------------------------------------------------------------ subjects, objects
 
     def _parts(self) -> tuple[list[Part], list[tuple[Part, bool]]]:
-        """Return the subjects and the objects. The flag of an object says whether a *not* denies this object alone."""
+        """Return the subjects and the objects. Each object has a flag: whether a *not* denies only this object."""
         unknown, objects = self.unknown, self._objects()
         if self._names_pursuit:
             gerunds = conjuncts(self.tree, self.verb, self._clauses.keys() - {self.verb.index})
@@ -278,7 +280,7 @@ class Clause:
 
     @cached_property
     def subjects(self) -> list[Part]:
-        """The clause's own subjects. Without these, the subjects of the head clause, or the unsaid subject."""
+        """The clause's own subjects. If there are none, the subjects of `head_clause`, or the unsaid subject."""
         own, head, verb = self.own_subjects, self.head_clause, self.verb
         above = self.tree.head(verb)
         if own and own[0].low in _RELATIVE and self._is_relative and len(own) == 1:
@@ -318,7 +320,7 @@ class Clause:
         return [phrase_of(self.tree, noun)]
 
     def _objects(self) -> list[tuple[Part, bool]]:
-        """Return the objects of the first kind that the clause has, in the README's order. For the flags, see `_parts`."""
+        """Return the objects of the first kind (in the README's order) that the clause has. For the flags, see `_parts`."""
         tree, verbs = self.tree, self.verbs
         if lacks_copula(tree, self.verb):
             return self._written([self.verb], self.verb)
@@ -389,9 +391,9 @@ class Clause:
         return bare and not self.tree.children(self.verb, "mark", "dobj")
 
     def _in_phrases(self, head: Word, *, of: bool = True) -> list[tuple[Part, bool]]:
-        """Return the noun of the first prepositional phrase after the head. If there is none, look before the head.
+        """Return the nouns of the first prepositional phrase after the head. If there is none, look before the head.
 
-        Without `of`, phrases with the preposition *of* do not count.
+        If `of` is false, leave out phrases with the preposition *of*.
         """
         heads = [head, *self.tree.children(head, "advmod")]  # as in "next to the station"
         phrases = [word for word in self.tree.children_of(heads, "prep", "dative") if of or word.low != "of"]
@@ -409,7 +411,7 @@ class Clause:
 
     @cached_property
     def unknown(self) -> _Unknown | None:
-        """The unknown, if the clause asks with a question word."""
+        """The part that the clause asks for; None if it has no question word that asks."""
         if self._is_relative:
             return None
         for word in self.own:
@@ -428,7 +430,7 @@ class Clause:
     # --------------------------------------------------------------------------------------- writing
 
     def _written(self, heads: Iterable[Word], verb: Word | None = None) -> list[tuple[Part, bool]]:
-        """Return the phrases of `heads` and their conjuncts, each with a flag: whether a *not* denies it alone."""
+        """Return the phrases of `heads` and their conjuncts, each with a flag: whether a *not* denies only this phrase."""
         found: list[tuple[Part, bool]] = []
         for head in heads:
             for word in conjuncts(self.tree, head, self._clauses):

@@ -13,12 +13,11 @@ from .tree import SUBJECTS, Tree, Word
 from .verbs import VERBAL
 
 SHORTEST = 3
-"""The minimum number of words of a question that can stand alone. *And you?* cannot."""
+"""The minimum number of words of a question that can be understood alone. *And you?* cannot."""
 LONGEST = 5
 """The maximum number of words of a remark: a sentence that only reacts to the agent, such as *haha, funny!*."""
 MOST = 8
-"""The maximum number of sentences of an utterance with a closing question. *And you?* counts after
-any number of sentences."""
+"""If an utterance has more sentences than this, it has no closing question, unless it ends with *and you?*."""
 LONG = 10
 """The maximum number of words in a statement before *and you?*."""
 
@@ -68,7 +67,7 @@ class Closing:
     """Whether `text` is the full question that the user shortened to *and you?*."""
 
     def outweighs(self, part: str) -> bool:
-        """Return whether a part of the utterance is only in the asides. Then the closing question should be answered."""
+        """Return whether a part of the utterance is only in the asides. Then the agent should answer the closing question, not this part."""
         return part not in self.text and any(part in aside for aside in self.asides)
 
 

@@ -1,8 +1,8 @@
 """Contrasts: *Leipzig, not Leeds*, *not Leeds but Leipzig*. A contrast asserts one phrase, and denies only the other.
 
 The parser finds no common structure for contrasts: it attaches *not* to the verb, or takes the denied word for a second
-object, an apposition or a verb. `join_contrasts` gives all of them one structure: the denied phrase is a conjunct of the
-asserted phrase, and the negation depends on the denied phrase.
+object, an apposition or a verb. `join_contrasts` gives all contrasts one structure: the denied phrase is a conjunct of the
+asserted phrase, and the negation depends on the denied phrase. A *repaired tree* (see `repair.repaired`) has this structure.
 """
 
 from __future__ import annotations
@@ -20,7 +20,7 @@ _NOUNS = ("NOUN", "PROPN", "NUM", "PRON", "X")
 _INNER = (*_NOUNS, "DET", "ADJ", "PART")
 _OBJECTS = ("dobj", "attr", "acomp", "pobj", "oprd")
 LONGEST = 3
-"""The maximum number of words of each side of a contrast without a verb."""
+"""The maximum number of words on each side of a contrast in a text without a verb. The word *not* is not counted."""
 _SKIPPED = (",", "-", "–", "—", ";", "(")
 _ASIDE = word_set(
     "today tonight tomorrow yesterday now day week month year time weekend night morning evening moment "
@@ -51,7 +51,7 @@ def contrasts_of(tree: Tree) -> tuple[Contrast, ...]:
 
 
 def is_denied(tree: Tree, word: Word) -> bool:
-    """Return whether, in a repaired tree, a negation denies this conjunct alone, or the prepositional phrase around it."""
+    """Return whether, in a repaired tree, a negation denies only this conjunct, or only the prepositional phrase around it."""
     above = tree.head(word)
     if word.dep == "pobj" and above.dep == "conj":
         word = above
@@ -65,7 +65,7 @@ def contrasted_with(tree: Tree, word: Word) -> bool:
 
 
 def join_contrasts(tree: Tree) -> list[Word]:
-    """Return the words of a tree with the denied phrase of each contrast as a conjunct of the asserted phrase."""
+    """Return the words of a tree, in which the denied phrase of each contrast becomes a conjunct of the asserted phrase."""
     if (words := _fragment(tree)) is not None:
         return words
     for word in tree.words:
@@ -77,7 +77,10 @@ def join_contrasts(tree: Tree) -> list[Word]:
 
 
 def _before_not(tree: Tree, negation: Word) -> tuple[Word, Word, Word, Sequence[Word]] | None:
-    """Return the parts of *Bern not Bonn*: the heads of both phrases, the negation, the words of the denied phrase."""
+    """Return the parts of *Bern not Bonn*; None if there is no such contrast.
+
+    The parts are the head of the asserted phrase, the head of the denied phrase, the negation, and the denied words.
+    """
     span = _span(tree, negation.index + 1)
     last = _back(tree, negation.index - 1)
     if last is None or not span:
@@ -180,7 +183,7 @@ def _joined(tree: Tree, right: Word, wrong: Word, negation: Word, span: Sequence
 
 
 def _is_tree(words: Sequence[Word]) -> bool:
-    """Return whether each word has a root above it."""
+    """Return whether the heads above each word lead to a root, without a loop."""
     for word in words:
         for _ in words:
             word = words[word.head]
@@ -190,7 +193,10 @@ def _is_tree(words: Sequence[Word]) -> bool:
 
 
 def _span(tree: Tree, start: int) -> list[Word]:
-    """Return the words of the phrase that begins at `start`. A single word counts even if it is tagged as a verb."""
+    """Return the words of the phrase that begins at index `start`.
+
+    A single word counts as a phrase even if the tagger takes it for a verb or an adverb.
+    """
     found: list[Word] = []
     for word in tree.words[start:]:
         if word.pos not in _INNER and not (word.pos == "ADP" and (not found or word.low == "of")):
@@ -212,7 +218,10 @@ def _top(tree: Tree, span: Sequence[Word]) -> Word | None:
 
 
 def _tops(tree: Tree, last: Word) -> list[Word]:
-    """Return the possible heads of the phrase that ends with `last`, lowest first."""
+    """Return the possible heads of the phrase that ends with `last`, the lowest in the tree first.
+
+    If there are more than two, heads with a determiner come first.
+    """
     found = [last] if last.pos in (*_NOUNS, "ADJ") and last.low not in PLACES else []
     for word in tree.ancestors(last) if found or last.low in PLACES else ():
         if word.index > last.index or (word.pos in VERBAL and word.dep != "relcl"):
@@ -224,7 +233,10 @@ def _tops(tree: Tree, last: Word) -> list[Word]:
 
 
 def _back(tree: Tree, place: int) -> Word | None:
-    """Return the last word of the phrase before a negation or *but*. A comma or an adverb may stand between them."""
+    """Return the last word of the phrase before a negation or *but*, searching back from index `place`.
+
+    A comma or an adverb may stand between this word and the negation.
+    """
     skipped = ("ADV", "CCONJ") if any(word.pos in VERBAL for word in tree.words) else ("ADV", "CCONJ", "PUNCT")
     while place >= 0 and (tree.words[place].low in _SKIPPED or tree.words[place].pos in skipped):
         place -= 1
@@ -257,7 +269,7 @@ def _begins(before: Sequence[Word]) -> bool:
 
 
 def _is_vague(word: Word) -> bool:
-    """Return whether a word is a pronoun that is no side of a contrast: *i not understand*, *she did it, not me*."""
+    """Return whether a word is a pronoun that *not* cannot contrast: *i* in *i not understand*, *it* in *she did it, not me*."""
     return word.pos == "PRON" and (word.dep in SUBJECTS or word.low in ("it", "that", "this"))
 
 

@@ -62,8 +62,8 @@ class Introduction:
     def named(self, persons: Collection[str]) -> Introduction | None:
         """Return the introduction, with a capital for the name; None if the rest is too short, or the name is doubtful.
 
-        The rest must have at least `SHORTEST` words. The name must be one word. Unless the introduction is `sure`, the name
-        must also be among `persons`.
+        The rest must have at least `SHORTEST` words, without *my name*. The name must be one word. Unless the introduction
+        is `sure`, the name must also be among `persons`.
         """
         known = self.sure or self.name.lower() in map(str.lower, persons)
         if (

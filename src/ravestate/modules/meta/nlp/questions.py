@@ -13,7 +13,7 @@ WH = ("WP", "WP$", "WDT", "WRB")
 FINITE = ("VBZ", "VBP", "VBD", "MD")
 """Tags of finite verbs."""
 MOST = 8
-"""The maximum number of questions of an utterance that are read one by one."""
+"""The maximum number of questions that `questions_in` returns."""
 
 
 _REQUESTING = word_set("tell name explain describe define list remind")
@@ -31,7 +31,10 @@ def questions_in(tree: Tree) -> list[str]:
 
 
 def _asked_in(tree: Tree, sentence: Sequence[Word]) -> Iterator[str]:
-    """Yield the questions and requests of a sentence. Each begins the sentence, or follows *and* with a question word."""
+    """Yield the questions and requests of a sentence.
+
+    Each of them begins the sentence, or is a clause with a question word after a conjunction such as *and*.
+    """
     ends = [at for at, word in enumerate(sentence) if word.pos == "CCONJ" and _opens(sentence[at + 1 :])]
     start, asks = 0, False
     for end in (*ends, len(sentence)):
@@ -88,6 +91,9 @@ def is_finite(words: Sequence[Word]) -> bool:
 
 
 def _opens(words: Sequence[Word]) -> bool:
-    """Return whether words are a clause that begins with a question word: *who wrote Hamlet*, *in which year was it*."""
+    """Return whether words are a clause that begins with a question word, perhaps after a preposition.
+
+    Examples: *who wrote Hamlet*, *in which year was it*.
+    """
     first = next((word for word in words if word.pos != "ADP"), None)
     return first is not None and _asks(first) and is_finite(words)

@@ -1,8 +1,8 @@
 """The reading of an utterance by a language model, which may replace parts of the module's own analysis.
 
-The server should constrain the model's answer to a JSON schema, so that the answer is a `Reading`. If the server does not,
-the module's own analysis stays. Sometimes the model wrongly answers the user's question, or leaves words out.
-`Reading.normal` rejects such a reading.
+The server should constrain the model's answer to a JSON schema, so that the answer is a `Reading`. If the answer
+is something else, the module's own analysis stays. Sometimes the model wrongly answers the user's question, or leaves
+words out. `Reading.normal` rejects such a reading.
 """
 
 from __future__ import annotations
@@ -61,7 +61,7 @@ class Reading(BaseModel):
     question: Literal["NONE", "YES_NO", "PERSON", "PLACE", "TIME", "REASON", "AMOUNT", "FORM", "OBJECT"]
     """The name of the kind of the first question, or ``NONE``."""
     answer: Literal["none", "yes", "probably yes", "unsure", "probably no", "no"]
-    """The meaning of the utterance as an answer."""
+    """The meaning of the utterance as an answer to a yes-no question."""
 
     @property
     def question_word(self) -> QuestionWord | None:
@@ -110,7 +110,7 @@ class ModelReader:
     """Reads utterances with a language model. The reader never delays an answer for long.
 
     After a failure, the next utterance is analysed without the model. Each further failure in a row doubles the number of
-    such utterances, up to `MOST_SKIPPED`. The reader belongs to one event loop.
+    utterances without the model, up to `MOST_SKIPPED`. The reader belongs to one event loop.
     """
 
     def __init__(self, backend: Backend, timeout: float) -> None:

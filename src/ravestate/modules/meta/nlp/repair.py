@@ -26,7 +26,7 @@ _POSSESSIVE = word_set("my our his her their your")
 _OWN_ACTIONS = word_set(
     "study work play love like run teach paint drive cook bake dance sing coach train design fish hate need want help"
 )
-"""Verbs of the first person that the parser takes for nouns after *and*."""
+"""Verbs that the parser takes for nouns if *and* joins them to a clause with *I*: *I am 23 and study law*."""
 _INVERTING = word_set("do does did can could will would should")
 
 
@@ -71,12 +71,12 @@ def _is_tree(words: Sequence[Word]) -> bool:
 
 
 def is_tag(word: Word) -> bool:
-    """Return whether a word of a repaired tree belongs to a question tag."""
+    """Return whether a word of a repaired tree is the auxiliary of a question tag."""
     return word.dep == "punct" and word.low in AUXILIARIES
 
 
 def tag_at(words: Sequence[Word], index: int) -> int:
-    """Return the number of words of the question tag at `index`: 3 for *don't you*; 0 if there is none."""
+    """Return the number of words of the question tag at `index`: 3 for *don't you* (*do*, *n't*, *you*); 0 if there is none."""
     negated = index + 1 < len(words) and words[index + 1].low in _NEGATIONS
     end = index + 2 + negated
     ended = end <= len(words) and words[end - 1].pos == "PRON" and (end == len(words) or words[end].pos == "PUNCT")
@@ -123,7 +123,7 @@ def _make_verb(tree: Tree, words: list[Word], auxiliary: Word) -> None:
 
 
 def _make_passive(tree: Tree, words: list[Word], be: Word) -> None:
-    """Turn a participle after its noun into the verb: *eaten* in *was it eaten by ants*, *crying* in *is he crying*."""
+    """Turn a participle after its noun into the main verb: *eaten* in *was it eaten by ants*, *crying* in *is he crying*."""
     nouns = [word for word in tree.children(be, "nsubj", "attr") if word.index > be.index]
     for participle in tree.children_of(nouns, "acl"):
         if be.low in _BE and be.dep == "ROOT" and tree.children(participle, "agent"):
@@ -173,7 +173,7 @@ def _make_present(tree: Tree, words: list[Word], noun: Word) -> None:
 
 
 def _make_joined(tree: Tree, words: list[Word], noun: Word) -> None:
-    """Turn a noun after *and* into the verb: *study*, in *I am 23 and study law*."""
+    """Turn a noun after *and* into a verb: *study*, in *I am 23 and study law*."""
     before, thing = tree.before(noun), tree.head(noun)
     verb = tree.head(thing)
     joined = noun.dep == "compound" and noun.low in _OWN_ACTIONS and before is not None and before.low in ("and", "but")
@@ -206,7 +206,7 @@ def _make_way(tree: Tree, words: list[Word], work: Word) -> None:
 
 
 def _split_relatives(tree: Tree) -> list[Word]:
-    """Return the words with relative clauses apart from the main clause.
+    """Return the words, with the relative clauses separated from the main clause.
 
     The parser takes some relative clauses for objects (*the hat that you gave me*). In other sentences, it takes the
     relative clause's object for the main verb's subject (*me*, in *the dog that bit me belongs to Ann*).
@@ -258,7 +258,7 @@ def _name_relative(tree: Tree, words: list[Word], noun: Word) -> None:
 
 
 def _reroot(tree: Tree, words: list[Word], auxiliary: Word, verb: Word, subject: Word, dep: str) -> None:
-    """Make `verb` the head of its sentence, with an auxiliary and a subject."""
+    """Make `verb` the root of its sentence. `auxiliary` (with the relation `dep`) and `subject` then depend on it."""
     for word in tree.words:
         if word == verb:
             words[word.index] = replace(words[word.index], dep="ROOT", head=word.index)

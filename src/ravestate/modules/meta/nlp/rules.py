@@ -21,12 +21,12 @@ from .pipeline import Pipeline, pipeline
 from .reading import Reading, model_reader
 
 SIGNALS = {"intent_play": names.intent_play, "intent_hi": names.intent_hi, "intent_bye": names.intent_bye}
-"""The signals of the user's acts."""
+"""Name → signal, for three acts of the user: they want to play, greet, or say goodbye."""
 
 
 @module.rule(when=rs.startup, background=True)
 def load(ctx: rs.RuleContext) -> None:
-    """Load the pipeline in the background, before the first words."""
+    """Load the pipeline in the background, before the user's first words."""
     wait_for_prompt()
     settings: Settings = ctx.settings
     with contextlib.suppress(PlatformError):  # `understand` reports the error
@@ -35,7 +35,7 @@ def load(ctx: rs.RuleContext) -> None:
 
 @module.rule(when=rs.startup, background=True)
 def learn(ctx: rs.RuleContext) -> None:
-    """Load the matchers and networks in the background, so that the first utterance does not wait for them."""
+    """Load the classifiers of sentences in the background, so that the first utterance does not wait for them."""
     wait_for_prompt()
     try:
         load_models()
@@ -45,7 +45,7 @@ def learn(ctx: rs.RuleContext) -> None:
 
 @module.rule(when=names.intents.changed.detached(), reads=names.intents, background=True)
 def learn_intents(ctx: rs.RuleContext) -> None:
-    """Learn the examples of the designer's intents in the background."""
+    """Learn the examples of the designer's intents (signals that examples define) in the background."""
     matcher = intent_matcher(ctx[names.intents].values())
     if matcher is not None:
         with contextlib.suppress(ModelMissing):  # `learn` has logged the warning
@@ -54,7 +54,7 @@ def learn_intents(ctx: rs.RuleContext) -> None:
 
 @module.rule(when=rs.startup, writes=names.reader)
 def connect(ctx: rs.RuleContext) -> rs.Resign | None:
-    """Prepare the language model of the settings."""
+    """Prepare a reader with the language model that the settings name."""
     settings: Settings = ctx.settings
     if not settings.model or ctx[names.reader] is not None:
         return rs.Resign("the settings name no model, or the designer has written a reader")

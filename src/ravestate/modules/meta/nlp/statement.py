@@ -46,7 +46,7 @@ class Statement:
     """
 
     triple: Triple
-    """The triple. A `QuestionWord` in it is the unknown of a question."""
+    """The triple. A `QuestionWord` in it stands for the part that a question asks for."""
     subject: Phrase
     object: Phrase
     """The object; an empty phrase if there is no object."""
@@ -77,7 +77,7 @@ class Statement:
 
     @property
     def subject_person(self) -> Person:
-        """The person of the subject: ``I`` for *I* and *we*."""
+        """The person of the subject: ``I`` for *I* and *we*, ``you`` for the agent, and ``other`` for everything else."""
         return self.subject.person
 
     @property

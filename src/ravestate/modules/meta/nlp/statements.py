@@ -124,7 +124,7 @@ class _Assertion:
     def _hearsay(self) -> bool:
         """Whether the statement reports somebody else's words: *Ada says that...*, *I heard that...*, *apparently...*.
 
-        Words that the speaker denies having said count, too: *I didn't say that I am shy*.
+        The flag is also true if the speaker denies having said the statement: *I didn't say that I am shy*.
         """
         if self._above is None or self._low & _REPORTS:
             return bool(self._low & _REPORTS)
@@ -219,7 +219,8 @@ class _Assertion:
 
     @cached_property
     def _denied_above(self) -> bool:
-        """Whether the clause above denies this clause: *I don't think that I am shy*, *it isn't true that I am shy*."""
+        """Whether the clause on which this clause depends denies it: *I don't think that I am shy*, *it isn't true
+        that...*."""
         if self._above is None or self._clause.verb.dep not in ("ccomp", "csubj"):
             return False
         said = self._above._clause
@@ -227,15 +228,15 @@ class _Assertion:
 
     @cached_property
     def _given(self) -> bool:
-        """Whether the clause above takes the statement as true: *you know that I live here*."""
+        """Whether the clause on which this clause depends takes it as true: *you know that I live here*."""
         assert self._above is not None
         return not self._low & {"if", "whether"} and self._above._clause.lemma in _KNOWN_AS_TRUE
 
     def _phrases(self, object: Phrase, *, denied: bool) -> Iterator[Phrase]:
-        """Yield the phrases that a statement has in its clause, apart from its subject and its object.
+        """Yield the phrases of a statement's clause, apart from its subject. One of them may also be the statement's object.
 
-        These are the nouns after prepositions and the complements of objects: *we called the dog Rex*. A proper noun
-        that is the object of *name*, *call* or *christen* counts, too.
+        They are the nouns after prepositions, and the complements of objects: *Rex*, in *we called the dog Rex*. A proper
+        noun that is the object of *name*, *call* or *christen* counts, too. Phrases after *of* are left out.
 
         A contrast, as in *not in Bonn, but in Bern*, has an asserted and a denied phrase. If `denied` is true, the
         statement is about the denied phrase: leave out the asserted phrase, and all denied phrases except `object`. If

@@ -58,12 +58,12 @@ class Tree:
         return children
 
     def children(self, word: Word, *deps: str) -> list[Word]:
-        """Return the words that depend directly on `word`, in text order; with `deps`, only by these relations."""
+        """Return the words that depend directly on `word`, in text order; with `deps`, only words with one of these relations."""
         children = self._children[word.index]
         return [child for child in children if child.dep in deps] if deps else children
 
     def children_of(self, heads: Iterable[Word], *deps: str) -> list[Word]:
-        """Return the words that depend directly on one of `heads`; with `deps`, only by these relations."""
+        """Return the words that depend directly on one of `heads`; with `deps`, only words with one of these relations."""
         return [child for head in heads for child in self.children(head, *deps)]
 
     def head(self, word: Word) -> Word:

@@ -26,7 +26,7 @@ class Acquaintance:
     """Values by topic, without the name."""
     talk: Talk
     told: Mapping[str, Told] = field(default_factory=dict[str, Told])
-    """The user's free statements by key, oldest first."""
+    """The user's free statements (which belong to no topic) by `Told.key`, oldest first."""
 
     @property
     def name(self) -> str | None:
@@ -52,7 +52,11 @@ class Acquaintance:
         return Acquaintance(found, merged(remembered, self.facts), talk, free)
 
     def doubted(self, graph: ontology.Graph) -> Acquaintance:
-        """Return the user. If memory knows facts about a person who may have this name, set `Talk.doubt`."""
+        """Return the user. If memory knows facts about a person who may have this name, set `Talk.doubt`: the user must then
+        prove that they are this person.
+
+        If the user has just told one of these facts, they are this person, and there is no doubt.
+        """
         if self.talk.met or self.who is None:
             return self
         people = [records.named(graph, self.who[NAME]), *records.candidates(graph, self.who[NAME])]

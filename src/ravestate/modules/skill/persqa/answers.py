@@ -23,7 +23,7 @@ def spelled_out(text: str) -> str:
 
 
 def without_opening(text: str) -> str:
-    """Return the words after *no*, *sorry* and the like; empty if a text has no such opening, or is an idiom."""
+    """Return the words after *no*, *sorry* and the like; empty if a text has no such opening, or is an idiom (*no problem*)."""
     opening = _CORRECTIONS.match(text)
     rest = text[opening.end() :] if opening else ""
     return "" if not rest or rest.lower().split()[0].strip(",.!") in WORDS["idioms"] else rest

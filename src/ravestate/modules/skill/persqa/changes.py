@@ -28,7 +28,7 @@ ALIKE = 0.6
 
 
 def is_partial(reader: Reader, said: nlp.Statement) -> bool:
-    """Return whether a negation denies only a part: *I'm not just a nurse*, *I don't row because it's cheap*."""
+    """Return whether a negation denies only a part of a statement: *I'm not just a nurse*, *I don't row because it's cheap*."""
     lasting = {"more", "longer", "anymore"} & reader.words
     reason = "because" in reader.words and not lasting and said.verb != "be"
     return said.negated and (reason or _PARTLY.search(reader.tree.text) is not None)
@@ -41,7 +41,7 @@ def is_brief(said: nlp.Statement) -> bool:
 
 def may_correct(seen: nlp.Analysis, topic: str) -> bool:
     """Return whether an utterance may correct a fact just mentioned: its only verbs are *say*, *mean* and the like."""
-    opposed = {text for one in seen.contrasts for text in (one.right.text, one.wrong.text)}  # the tagger may see verbs
+    opposed = {text for one in seen.contrasts for text in (one.right.text, one.wrong.text)}  # the parser may see verbs
     finite = {
         word.lemma for word in seen.tree.words if word.tag in ("VBD", "VBZ", "VBP", "MD") and word.text not in opposed
     }

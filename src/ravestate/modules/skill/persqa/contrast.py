@@ -1,5 +1,7 @@
 """Corrections: *Leipzig, not Leeds*, *it's not Leeds, it's Leipzig*, *no, Leipzig*.
 
+A fact has a *topic*, such as *home*, and *values*, such as *Ulm*.
+
 The parse gives the wrong value and the right value. The wrong value tells which fact the user corrects: a known fact about
 them or their relatives, no matter when it was mentioned. Without a wrong value, users correct the fact that was mentioned
 last. If that fact does not suit the right value, they correct the only known fact that does.
@@ -25,14 +27,18 @@ from .wording import among, mentioned, same
 _SUBJECTS = frozenset(["it", "that", "this", "he", "she", "they", "i"])
 _CONTENT = frozenset(["NOUN", "PROPN", "NUM", "ADJ", "VERB", "X"])
 _PLAIN: dict[str, float] = {"place": 0.0, "number": 0.0, "organisation": 0.5, "work": 0.5}
-"""Kind for which a bare value shows which fact is meant (*no, Leipzig*) → the `likeness` that the value must exceed."""
+"""Kind of value for which a bare value shows which fact is meant (*no, Leipzig*) → the `likeness` that the value must
+exceed."""
 _MEANING = frozenset(["meant", "mean", "said"])
 _POINTING = frozenset(["that", "this", "these", "those"])
 
 
 @dataclass(frozen=True, slots=True)
 class Correction:
-    """The facts and free statements that a correction adds, and the free statements that it removes (`gone`)."""
+    """The facts and free statements that a correction adds, and the free statements that it removes (`gone`).
+
+    A *free statement* belongs to no topic: *Jonas plays the violin*.
+    """
 
     facts: tuple[Fact, ...] = ()
     free: tuple[Told, ...] = ()
@@ -48,7 +54,7 @@ def corrected_in(
     """Return the correction in an utterance.
 
     Args:
-        reader: The facts in the utterance.
+        reader: The reader of the utterance, which finds the facts in it.
         text: The utterance, with its short forms written out.
         talk: The state of the conversation.
         told: The known free statements.
@@ -117,7 +123,10 @@ def _is_about(seen: nlp.Analysis, topic: str, recent: str) -> bool:
 
 
 def _may_retell(seen: nlp.Analysis, one: Told, wrong: str) -> bool:
-    """Return whether a contrast may correct a free statement: its clauses have the statement's subject, or a pronoun."""
+    """Return whether a contrast may correct a free statement.
+
+    Each clause of the utterance must have the subject of the free statement, or a pronoun as its subject.
+    """
     if not same(one.object, wrong):
         return False
     about = {one.subject.lower(), one.who.lower(), *_SUBJECTS}
@@ -131,7 +140,7 @@ def _opposed(reader: Reader, rest: str, recent: str, latest: Sequence[str], *, a
     """Return the topic that words such as *no, Leipzig* correct; empty if this is not clear.
 
     It is the topic mentioned last, or else the only known topic that the value suits. If the agent's last words were a
-    question (`answers`), the words may answer it, so only the topic mentioned last counts.
+    question (`answers`), the user's words may answer it, so only the topic mentioned last counts.
     """
     seen, known = reader.seen, reader.known
     values = {topic: reader.values_in(rest, topic) for topic in {*known, recent} - {""}}

@@ -1,4 +1,4 @@
-"""The kinds of nouns: places, jobs, names, and nouns that cannot be the value of a topic."""
+"""Classifiers: of nouns (places, jobs, names...), and of the user's reactions to the agent's questions."""
 
 from __future__ import annotations
 

@@ -36,7 +36,8 @@ class Settings(rs.Settings):
     within: Annotated[float, Field(gt=0)] = 90.0
     """Seconds for which a question waits for its answer."""
     confirm: bool = True
-    """Whether a user who gives a name that memory already holds must answer a question, to prove that they are this person."""
+    """Whether a user who gives a name that memory already knows must answer a question, to prove that they are this
+    person."""
     ignored: Annotated[int, Field(ge=1)] = 2
     """After this many unanswered questions in a row, the agent asks nothing until the user speaks."""
 
@@ -50,7 +51,7 @@ facts: rs.Collection[tuple[str, ...]] = module.collection("facts")
 """Values by topic (``home``, ``hobby``, ...); an empty tuple means that the user has none."""
 
 told: rs.Collection[Told] = module.collection("told")
-"""The user's free statements about themselves and others, oldest first: *Jonas plays the violin*."""
+"""The user's free statements, which belong to no topic, oldest first: *Jonas plays the violin*."""
 
 talk: rs.Slot[Talk] = module.slot("talk", Talk(), type=Talk)
 """The state of the conversation about the user, such as the open question, and the topics that the user refused."""

@@ -1,4 +1,7 @@
-"""The plainest sentences in which users tell facts. They stand in for the tagger until it is loaded, or if it is missing."""
+"""The plainest sentences in which users tell facts.
+
+They replace the tagger (a network that finds facts) until it is loaded, or if it is missing.
+"""
 
 from __future__ import annotations
 

@@ -1,4 +1,7 @@
-"""Change the known facts when the user tells something. The functions here save nothing."""
+"""Change the known facts when the user tells something. The functions here save nothing.
+
+A fact has a *topic*, such as *home*, and *values*, such as *Ulm*.
+"""
 
 from __future__ import annotations
 

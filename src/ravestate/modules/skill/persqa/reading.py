@@ -1,7 +1,9 @@
 """The facts that an utterance tells or asks for.
 
-The tagger finds the values that the user states or denies. The statements of the analysis (`nlp.Statement`) show what the
-user asks, and which topics lose all their values (*I quit my job*).
+A fact has a *topic*, such as *home*, and *values*, such as *Ulm*.
+
+The tagger (a network) finds the values that the user states or denies. The statements of the analysis (`nlp.Statement`)
+show what the user asks, and which topics lose all their values (*I quit my job*).
 """
 
 from __future__ import annotations
@@ -26,7 +28,8 @@ SURE = 0.5
 CLEAR = 0.9
 """If the tagger is at least this confident of a value, the value counts regardless of the agent's question."""
 OPENING = 30
-"""A name that the tagger does not find, but that follows words such as *my name is*, must start before this character."""
+"""A name that the tagger does not find, but that follows words such as *my name is*, must start before this position in
+the text."""
 LONGEST = 1_000
 """If a text has more characters than this, the tagger does not read it."""
 FEW = 2
@@ -38,7 +41,7 @@ _UNUSUAL = re.compile(r"[^\w\s.,;:!?'’\"-]")
 """Characters that no word of English has. The tagger was not trained on them."""
 _PARTLY = re.compile(r"(?:n['’]t|\bnot) (?:just|only|merely|simply)\b|\bbecause\b", re.IGNORECASE)
 _JOINED = re.compile(r"[^.!?]*\band\b[^.!?]*", re.IGNORECASE)
-"""If *and* stands between two values in one sentence, an unsure second value does not correct the first value."""
+"""If *and* stands between two values in one sentence, an unsure second value does not replace the first value."""
 _SPEAKING = frozenset(("speak", "talk", "call", "be"))
 _NAMING = frozenset(("call", "name", "christen", "baptise", "dub", "say", "use", "prefer", "be"))
 """Verbs with which users say their own name: *Ada speaking*, *just say Kim*."""
@@ -249,7 +252,8 @@ class Reader:
     def _names_another(self, word: Word) -> bool:
         """Return whether a name is somebody else's.
 
-        Such a name is the subject or object of most verbs, is given to *it* or *her*, or follows *me and*.
+        Such a name is given to *it* or *her*, follows *me and*, or is the subject or object of a verb. Verbs with which
+        users say their own name, such as *call*, are exceptions.
         """
         head = self.tree.head(word)
         if word.dep == "conj":
@@ -396,7 +400,7 @@ class Reader:
         return min(verbs, key=lambda word: word.pos not in ("VERB", "AUX"), default=None)
 
     def is_denied(self, said: nlp.Statement) -> bool:
-        """Return whether a clause above a statement denies it: *it's not like I left*, *it's not true that I left*."""
+        """Return whether a clause that governs a statement denies it: *it's not like I left*, *it's not true that I left*."""
         verb = self.verb(said)
         marks = [] if verb is None else [word.low for word in self.tree.children(verb, "mark")]
         if verb is None or verb.dep not in ("advcl", "ccomp", "acl") or not {"like", "that"}.intersection(marks):
@@ -432,7 +436,7 @@ def _holds(tag: Tag) -> bool:
 
 
 def predicate_of(said: nlp.Statement) -> str:
-    """Return the predicate without *not*, and without verbs of beginning or continuing: *work* of *start to work*."""
+    """Return the predicate without *not*, and without verbs of beginning or continuing: *work* for *start to work*."""
     words = said.triple.predicate.removeprefix("not ").split()
     while len(words) > 1 and (words[0] in WORDS["beginning"] or words[:2] == ["end", "up"]):
         first = 2 if words[0] == "end" or words[1] == "to" else 1

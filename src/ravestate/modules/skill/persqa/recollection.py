@@ -12,12 +12,12 @@ from ravestate.language.reranker import Reranker
 from ravestate.modules import nlp
 
 CLEARLY = 2.0
-"""The least lead of the best sentence over the second best, in logits. The lead counts, because some
-questions have higher scores than others."""
+"""The least lead of the best sentence over the second best, in logits (raw scores of the network). Scores alone say too
+little, because some questions have higher scores than others."""
 LEAST = -7.0
 """The least score of an answer, in logits. A wrong answer is worse than no answer."""
 LIKELY = 0.4
-"""The least confidence that the user wants to be reminded, for a question without a verb of memory."""
+"""The least confidence that the user wants to be reminded, for a question without a verb such as *remember* or *tell*."""
 LONGEST = 160
 """The maximum length of a sentence to quote, in characters."""
 SHORTEST = 3

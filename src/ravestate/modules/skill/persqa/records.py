@@ -1,4 +1,7 @@
-"""People in memory, with the values of topics as nodes and relations."""
+"""People in memory, with the values of topics as nodes and relations.
+
+A fact has a *topic*, such as *home*, and *values*, such as *Ulm*.
+"""
 
 from __future__ import annotations
 
@@ -11,9 +14,10 @@ from .topics import NAME, TOPICS, about, in_order
 from .wording import Facts, alike, among, same
 
 REMARK = "has_told"
-"""The relation from a person to their free statements."""
+"""The relation from a person to their *free statements*, which belong to no topic: *Jonas plays the violin*."""
 LEFT_OUT = 2
-"""The minimum number of letters that a short form leaves out: *Mo* is short for *Mohammed*, but *Paul* not for *Paula*."""
+"""The minimum number of letters that a short form leaves out: *Mo* is short for *Mohammed*, but *Paul* is not short for
+*Paula*."""
 MOST = 200
 """The maximum number of free statements that memory keeps for a person."""
 
@@ -130,7 +134,7 @@ def note_remarks(graph: ontology.Graph, person: ontology.Node, told: Mapping[str
 
 
 def _related(graph: ontology.Graph, person: ontology.Node) -> dict[str, list[ontology.Node]]:
-    """Return the named nodes to which a person is related, by topic."""
+    """Return the nodes that have a name and to which a person is related, by topic."""
     found: dict[str, list[ontology.Node]] = {}
     for relation in graph.relations(person):
         topic = about(relation.name, relation.properties.get("role"))

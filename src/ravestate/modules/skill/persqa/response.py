@@ -1,4 +1,7 @@
-"""The response to an utterance: the facts after it, and the reply."""
+"""The response to an utterance: the facts after it, and the reply.
+
+A fact has a *topic*, such as *home*, and *values*, such as *Ulm*.
+"""
 
 from __future__ import annotations
 
@@ -49,7 +52,8 @@ def respond_to(
         user: The user before the utterance.
         now: Seconds from the beginning of the context.
         chance: The source of random choices.
-        confirm: Whether a user who gives a name in memory must answer a question, to prove that they are this person.
+        confirm: Whether a user who gives a name that memory knows must answer a question, to prove that they are this
+            person.
     """
     if meaning.kind == "which":  # the question stays open
         return Response(say("which", user.known), _with(user, ignored=0, spoke=now))
@@ -183,7 +187,7 @@ def _told(meaning: Meaning, user: Acquaintance, now: float, chance: random.Rando
     if not meaning.facts and not meaning.free and not meaning.gone:
         return Response(None, user)
     name = next((fact.values[0] for fact in meaning.facts if fact.topic == NAME and not fact.gone), None)
-    if meaning.another:  # the user before has left
+    if meaning.another:  # the previous user has left
         user = Acquaintance(None, {}, Talk(spoke=now, turns=1))
     before = user
     news = learn(user.facts, meaning.facts)
@@ -222,7 +226,7 @@ def _told(meaning: Meaning, user: Acquaintance, now: float, chance: random.Rando
 
 
 def _without_idle(meaning: Meaning, user: Acquaintance) -> Meaning:
-    """Turn denials that change no fact into free statements: *you are not from Spain*."""
+    """Turn denials that change no fact into free statements, which belong to no topic: *you are not from Spain*."""
     idle = [fact for fact in meaning.facts if is_idle(fact, user.known)]
     values = [value.lower() for fact in idle for value in fact.values]
     denials = [
@@ -395,7 +399,7 @@ def _unrelated(said: Iterable[Told], values: Sequence[str]) -> tuple[Told, ...]:
 
 
 def _has_words(text: str, words: str) -> bool:
-    """Return whether a text contains some words, not merely parts of its own words: *art*, but not *party*."""
+    """Return whether a text contains some words, not merely parts of words: *modern art* has *art*, but *party* does not."""
     return (
         bool(words.strip()) and re.search(rf"(?<!\w){re.escape(words.strip())}(?!\w)", text, re.IGNORECASE) is not None
     )

@@ -1,4 +1,7 @@
-"""The rules of persqa. The agent asks the user about themselves, learns from their words, and replies."""
+"""The rules of persqa. The agent asks the user about themselves, learns from their words, and replies.
+
+An *intent* names what the agent wants to say; the module `verbaliser` puts it into words.
+"""
 
 from __future__ import annotations
 
@@ -180,7 +183,7 @@ async def respond(ctx: rs.RuleContext) -> None:
 async def overhear(ctx: rs.RuleContext) -> rs.Resign | None:
     """Note the agent's latest words. The user's next words may answer these words, and not an earlier question.
 
-    They may also correct a fact that the agent's words mention.
+    The user's next words may also correct a fact that the agent's words mention.
     """
     words: str = ctx.payload(rawio.output.changed)
     if not any(letter.isalpha() for letter in words):
@@ -232,7 +235,7 @@ async def welcome(ctx: rs.RuleContext) -> rs.Resign | None:
     background=True,
 )
 async def part(ctx: rs.RuleContext) -> rs.Resign | None:
-    """Reset the state of the conversation when the user leaves."""
+    """Reset the state of the conversation when the user leaves. If one other user stays, begin a conversation with them."""
     left, known = person_of(ctx.payload(interloc.users.removed).item), ctx[who]
     others = list(ctx[interloc.users].values())
     if len(others) > 1 or (others and (left is None or known is None or left[NAME] != known[NAME])):

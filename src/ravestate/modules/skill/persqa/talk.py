@@ -1,4 +1,7 @@
-"""The state of the conversation about the user, and its transitions."""
+"""The state of the conversation about the user, and its transitions.
+
+A fact has a *topic*, such as *home*, and *values*, such as *Ulm*.
+"""
 
 from __future__ import annotations
 
@@ -21,7 +24,7 @@ TRIES = 2
 """The maximum number of questions about one topic in a conversation."""
 
 LONGEST = 100
-"""The number of the user's statements that a conversation remembers."""
+"""The maximum number of the user's statements, and of the user's sentences, that a conversation remembers."""
 
 CORRECTABLE = 2
 """The number of utterances for which the user can correct the last fact in a few words: "no, Bremen"."""
@@ -91,11 +94,11 @@ class Talk:
     asked: float | None = None
     """Seconds from the beginning of the context to the last question that the agent asked in a silence."""
     touched: frozenset[str] = frozenset()
-    """Topics that the user's words have touched."""
+    """Topics for which the user has used typical words, such as *office* for the occupation."""
     person: str = ""
     """The topic of the relative whom the user mentioned last."""
     spoken: str = ""
-    """The agent's last words. The user may correct a fact that they mention: "no, Bremen"."""
+    """The agent's last words. The user may correct a fact in these words: "no, Bremen"."""
     spoke: float = 0.0
     """Seconds from the beginning of the context to the user's last words."""
 
@@ -125,14 +128,14 @@ class Talk:
         return question if question and question.turns <= 1 and now - question.since <= within else None
 
     def listening(self, now: float, *, leave: bool = False, person: str = "", **noted: Any) -> Talk:
-        """Count an utterance of the user; `leave` means a goodbye."""
+        """Count an utterance of the user. `leave`: whether it says goodbye; `noted`: the new values of other fields."""
         question = replace(self.question, turns=self.question.turns + 1) if self.question and not leave else None
         counts = {"ignored": 0, "age": self.age + 1, "turns": self.turns + 1, "quiet": leave, "spoke": now}
         counts |= {"parted": self.parted or leave}
         return replace(self, question=question, person=person or self.person, **counts, **noted)
 
     def speaking(self, words: str = "") -> Talk:
-        """Note that the agent has spoken: first the question itself, and in later calls something else."""
+        """Note the agent's words. The first words after `asking` are the question itself; later words are something else."""
         question = self.question
         if question is not None and not (question.heard and question.turns):
             question = replace(question, heard=True, spoken_over=question.heard)
@@ -162,14 +165,14 @@ class Talk:
         return talk.keeping(gone).learning(gone.keys(), "", ())
 
     def keeping(self, values: Mapping[str, tuple[str, ...]]) -> Talk:
-        """Note values that this conversation saves or removes. Memory may not have finished yet."""
+        """Note values that this conversation saves or removes, even if memory has not finished yet."""
         return replace(
             self, once={**self.once, **{topic: self.once.get(topic, ()) + values[topic] for topic in values}}
         )
 
     @property
     def ever(self) -> Mapping[str, tuple[str, ...]]:
-        """All values that memory held before this conversation, and all values that this conversation saved or removed."""
+        """All values that memory had before this conversation, and all values that this conversation saved or removed."""
         topics = {**self.remembered, **self.once}
         return {topic: self.remembered.get(topic, ()) + self.once.get(topic, ()) for topic in topics}
 

@@ -26,7 +26,7 @@ _SAID_BACK = {
     "we": "you", "our": "your", "us": "you", "ours": "yours",
 }  # fmt: skip
 LEAST = 0.73
-"""The least similarity of a question and the statement that answers it."""
+"""The least similarity between a question and the statement that answers it."""
 _FIT = {
     nlp.QuestionWord.PERSON: re.compile(r"(?<!^)\b[A-Z]\w|\byour \w"),
     nlp.QuestionWord.TIME: re.compile(
@@ -34,7 +34,7 @@ _FIT = {
     ),
     nlp.QuestionWord.PLACE: re.compile(r"\b(?:in|at|to|from|near|on) \w"),
 }
-"""The kind of a question → a pattern that fits the statements that can answer the question."""
+"""The kind of a question → a pattern for the statements that can answer such a question."""
 _FIT[nlp.QuestionWord.AMOUNT] = re.compile(
     r"\d|\b(?:half|(?:one|two|three|four|five|six|seven|eight|nine)(?:teen|ty)?|ten|eleven|twelve|(?:thir|fif|eigh)teen|"
     r"(?:twen|thir|for|fif|eigh)ty|hundred|thousand|many|few|no)\b",
@@ -83,8 +83,8 @@ class Told:
 def told_in(reader: Reader, before: Sequence[Told] = ()) -> tuple[list[Told], list[Told]]:
     """Return the free statements of an utterance, and all its statements.
 
-    In both lists, a name replaces the subject where possible. *He* becomes the person named last, and *my sister*
-    becomes the known sister.
+    In both lists, a name replaces the subject where possible. *He* becomes the name of the person named last, and *my
+    sister* becomes the name of the known sister.
     """
     free: list[Told] = []
     heard: list[Told] = []
@@ -216,7 +216,7 @@ def recalled(reader: Reader, told: Iterable[Told], known: Facts) -> list[Told]:
 
 
 def _latest(told: Iterable[Told]) -> list[Told]:
-    """Return the statements in order. If several statements have the same text, keep the last one."""
+    """Return the statements in order, without statements that have no text. If several statements have the same text, keep the last one."""
     found: dict[str, Told] = {}
     for one in filter(lambda one: one.text, told):
         found.pop(one.text, None)
@@ -225,7 +225,7 @@ def _latest(told: Iterable[Told]) -> list[Told]:
 
 
 def _is_about(one: Told, asked: nlp.Statement, known: Facts) -> bool:
-    """Return whether a statement has the subject that the user asks about: *Rosa* counts as *my sister*."""
+    """Return whether a statement has the subject that the user asks about: *Rosa* counts as *my sister* if she is the user's sister."""
     subject = asked.subject
     if subject.person == "I":
         return one.subject.lower() == "i"
@@ -269,7 +269,7 @@ def _covers(one: Told, words: Iterable[str], known: Facts) -> bool:
 
 
 def _alike(verb: str) -> frozenset[str]:
-    """Return the verbs of a statement that answers a question with this verb: *Ines moved* answers *does Ines live*."""
+    """Return the verbs that answer a question with this verb: *Ines moved to Ghent* answers *where does Ines live?*."""
     return WORDS["dwelling"] if verb in WORDS["dwelling"] else frozenset([verb])
 
 
@@ -319,7 +319,7 @@ def _gained(reader: Reader, said: nlp.Statement) -> bool:
 
 
 def _noted(reader: Reader, said: nlp.Statement) -> bool:
-    """Return whether a statement reports a past event with a name: *I went to Prague*, but not *I went to the shop*."""
+    """Return whether a statement reports a past event, and its object has a name: *I went to Prague*, but not *I went to the shop*."""
     return bool(said.object.names) and said.verb in WORDS["events"] and _happened(reader, said)
 
 

@@ -127,16 +127,16 @@ def due(
 ) -> str:
     """Return the topic to ask about next, or an empty string.
 
-    The topic with the fewest tries comes first. If several have the fewest, the name comes first, then the follow-up of
-    the `last` topic, then a topic that the user has touched.
+    The topic with the fewest tries comes first. If several have the fewest, the name comes first. Then come the topics
+    whose `only_with` is the topic `last`, and then the topics in `touched`.
 
     Args:
-        wanted: Names of topics.
+        wanted: The names of the topics to choose from.
         known: The values by topic; an empty tuple means that there are none.
         closed: Topics not to ask about.
         tries: The number of questions that the agent has asked about each topic.
         last: The topic that the agent learnt or mentioned most recently.
-        touched: Topics that the user's words have touched.
+        touched: Topics for which the user has used typical words (see `touched_by`).
         limit: The maximum number of questions about one topic.
 
     Example:
@@ -158,7 +158,7 @@ def due(
 
 
 def touched_by(words: Collection[str]) -> frozenset[str]:
-    """Return the topics that the lemmas of an utterance touch."""
+    """Return the topics that have one of their typical words among the lemmas of an utterance."""
     return frozenset(topic.name for topic in _ROWS if not {*topic.nouns, *topic.touching}.isdisjoint(words))
 
 

@@ -1,4 +1,7 @@
-"""The meaning of an utterance for the conversation about the user."""
+"""The meaning of an utterance for the conversation about the user.
+
+A fact has a *topic*, such as *home*, and *values*, such as *Ulm*.
+"""
 
 from __future__ import annotations
 
@@ -27,7 +30,7 @@ EVERYTHING = "everything"
 """The value of `Fact.topic` that stands for all topics."""
 
 SURELY = 0.7
-"""If an utterance has several sentences: the minimum confidence that one of them says who the user is."""
+"""The minimum confidence that a sentence says who the user is, if the utterance has several sentences."""
 BRIEF = 4
 """The maximum number of words of a mere yes. It is also the maximum number of words of an utterance after which the agent
 may ask about something else."""
@@ -74,7 +77,7 @@ class Meaning:
     gone: tuple[Told, ...] = ()
     """Free statements that the user denies or corrects."""
     touched: frozenset[str] = frozenset()
-    """The topics that the user's words touch."""
+    """The topics for which the user uses typical words, such as *office* for the occupation."""
     person: str = ""
     """The topic of the relative whom the user mentions."""
     another: bool = False
@@ -411,7 +414,7 @@ class _Hearing:
         return said.request or "want" in words or bool({"can", "could", "would", "please"} & set(words[:3]))
 
     def matters(self, fact: Fact) -> bool:
-        """Return whether to note a denial. A denial of certain values always counts.
+        """Return whether to note a denial. A denial of single values (*I don't play chess*) always counts.
 
         A denial of a whole topic (*I have no hobby*) does not count for the name. It does not count either for a place
         that is neither asked for nor known.

@@ -1,4 +1,7 @@
-"""The spelling of values, their wording in sentences, and the replies as intents for the verbaliser."""
+"""The spelling of values, their wording in sentences, and the replies as intents.
+
+An *intent* names what the agent wants to say; the module `verbaliser` puts it into words.
+"""
 
 from __future__ import annotations
 

@@ -31,7 +31,7 @@ def choose(settings: Settings) -> Choice:
     """Return the backend to use. The call may block for a few seconds while it asks servers. It loads no model.
 
     ``auto`` takes the first of these: a server or model in the settings; the default of ``ravestate model get``; a
-    server on this machine; a model file in the user's folders; the listening skill.
+    server on this machine; a model file in the user's folders; the listening skill (authored phrases).
 
     Raises:
         PlatformError: The settings name a model that does not exist.

@@ -1,4 +1,5 @@
-"""Download a chat model from the hub: resume after an interruption, and verify the file before it is used."""
+"""Download a chat model from the hub of Hugging Face: resume after an interruption, and verify the file before it is
+used."""
 
 from __future__ import annotations
 
@@ -52,7 +53,8 @@ def download(model: CatalogueModel) -> None:
 
 @contextlib.contextmanager
 def alone(model: CatalogueModel) -> Generator[BinaryIO]:
-    """Open the unfinished file, and refuse a second process that fetches or removes the model. Remove an empty file."""
+    """Open the unfinished file, and refuse a second process that fetches or removes the model. At the end, remove an empty
+    file."""
     with model.part.open("ab") as part:
         try:
             import fcntl

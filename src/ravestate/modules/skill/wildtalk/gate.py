@@ -20,7 +20,7 @@ from .listening.tongue import tongue_of
 
 FAR, NEAR, UNRELATED = 0.45, 0.56, -10.9
 """The gate refuses answers whose similarity to the conversation is below FAR. From FAR to NEAR, it refuses answers that
-the cross-encoder scores below UNRELATED.
+the cross-encoder (a network that compares two texts) scores below UNRELATED.
 
 The three limits are calibrated on small talk: all 25 fitting answers pass, and 9 of 10 misplaced answers are refused.
 """

@@ -1,4 +1,6 @@
-"""The header of a GGUF file: its architecture, the number of its parameters, and whether it can chat.
+"""The header of a GGUF file: the model's architecture, the number of its parameters, and whether it can chat.
+
+GGUF is the format of models for llama.cpp.
 
 The package ``gguf`` reads every token of the vocabulary, which takes seconds per file. This reader skips the tokens.
 The format: https://github.com/ggml-org/ggml/blob/master/docs/gguf.md
@@ -15,7 +17,7 @@ from pathlib import Path
 from typing import Any
 
 LARGEST = 64 << 20
-"""The maximum size of a header in bytes; the largest vocabularies take a quarter of it."""
+"""The maximum size of a header in bytes; the headers with the largest vocabularies have a quarter of this size."""
 
 _STRING, _ARRAY = 8, 9
 _NUMBERS: dict[int, str] = dict(zip((0, 1, 2, 3, 4, 5, 6, 7, 10, 11, 12), "BbHhIif?Qqd", strict=True))
@@ -85,7 +87,7 @@ class _Reader:
         return self._data[self._at - length : self._at].decode("utf-8", "replace")
 
     def _value(self, kind: int) -> Any:
-        """Return a value; skip an array."""
+        """Return a value. If it is an array, skip it, and return None."""
         if kind == _STRING:
             return self._text()
         if kind != _ARRAY:

@@ -64,7 +64,7 @@ class History:
         if not message.text:
             return
         if self._messages and self._messages[-1].role == message.role:
-            # Two messages of one speaker in a row are one turn.
+            # Two messages of one speaker in a row become one message.
             last = self._messages.pop()
             message = Message(message.role, f"{last.text} {message.text}"[-2 * self._characters :])
         self._messages.append(message)

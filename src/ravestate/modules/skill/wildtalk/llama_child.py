@@ -39,7 +39,7 @@ def _main() -> None:
 
 
 def _load(config: dict[str, Any]) -> Any:
-    llama: Any = importlib.import_module("xllamacpp")  # it has no types
+    llama: Any = importlib.import_module("xllamacpp")  # the package has no type hints
     parameters = llama.CommonParams()
     parameters.model.path = config["path"]
     parameters.n_ctx = config["context_tokens"]

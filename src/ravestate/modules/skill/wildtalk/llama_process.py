@@ -25,7 +25,7 @@ from ravestate.errors import PlatformError
 
 @dataclass(frozen=True, slots=True)
 class ModelKey:
-    """The file and its options; contexts with the same key share a process."""
+    """A model's file, and the options to run it. Contexts with the same key share a process."""
 
     path: Path
     context_tokens: int
@@ -71,7 +71,7 @@ class LlamaProcess:
 
     @property
     def pid(self) -> int | None:
-        """The process's number, if it runs."""
+        """The id of the process; None if it does not run."""
         return self._process.pid if self._process is not None and self.alive else None
 
     def obituary(self, grace: float = 0.0) -> str:

@@ -17,7 +17,7 @@ PORTS = {11434: "Ollama", 8080: "llama.cpp", 1234: "LM Studio", 8000: "vLLM"}
 """The usual ports of the programs that serve models, in the order of preference."""
 
 PATIENCE = 1.0
-"""The seconds to wait for all servers, which are asked at the same time."""
+"""The number of seconds to wait for all servers, which are asked at the same time."""
 
 # Models that do not chat, and models that a server on this machine only passes on from a remote server.
 _NOT_CHAT = re.compile(

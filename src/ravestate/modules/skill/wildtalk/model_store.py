@@ -16,7 +16,7 @@ RECOMMENDED = "qwen2.5-1.5b"
 
 @dataclass(frozen=True, slots=True)
 class CatalogueModel:
-    """A chat model that can be fetched: one file in a repository on the hub."""
+    """A chat model that can be fetched: one file in a repository on the hub of Hugging Face."""
 
     name: str
     repository: str

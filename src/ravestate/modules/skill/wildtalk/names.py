@@ -26,7 +26,7 @@ OLLAMA = "http://localhost:11434/v1"
 class Settings(rs.Settings):
     """The choice of the language model, its persona, and the limits of an answer."""
 
-    model_config = ConfigDict(protected_namespaces=())  # `model_path` is ours
+    model_config = ConfigDict(protected_namespaces=())  # otherwise, pydantic reserves the name `model_path`
 
     backend: Literal["auto", "openai", "gguf", "transformers", "listen"] = "auto"
     """``openai``: a server that speaks OpenAI's protocol; ``gguf``: a model file on this machine; ``transformers``: a model in
@@ -35,7 +35,7 @@ class Settings(rs.Settings):
     """Whether to look for servers on this machine's usual ports, and for models in the user's folders."""
     model: NameOrPath | None = None
     """openai: the model's name on the server; gguf: the name (``ravestate model list``) or path of a file;
-    transformers: a folder or a name on the hub, by default gpt2."""
+    transformers: a folder or a name on the hub of Hugging Face, by default gpt2."""
     model_path: Path | None = None
     """gguf: a chat model in GGUF format."""
     context_tokens: Annotated[int, Field(ge=256)] = 4096
@@ -62,7 +62,8 @@ class Settings(rs.Settings):
     no_facts: str = "I don't know that, I'm afraid."
     """The answer to a question about facts, unless `facts` lets the model answer."""
     gate: bool = True
-    """Whether to check each generated sentence before it is spoken. The listening skill replaces an unfit answer."""
+    """Whether to check each generated sentence before it is spoken. If none is fit, the listening skill answers, with
+    authored phrases."""
     no_model: str = "I cannot think just now."
     """The answer when the model cannot be loaded, or fails before its first word."""
 
@@ -73,7 +74,7 @@ class Settings(rs.Settings):
     temperature: Annotated[float, Field(ge=0, le=2)] = 0.5
     """The randomness: 0 always takes the likeliest word, 1 is the model's own distribution."""
     history_turns: Annotated[int, Field(ge=1)] = 6
-    """The number of turns in the prompt."""
+    """The maximum number of turns in the prompt. A turn is an utterance of the user with its answer."""
     history_characters: Annotated[int, Field(ge=100)] = 4000
     """The maximum number of characters of these turns; about four make a token."""
 

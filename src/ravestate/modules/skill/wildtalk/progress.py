@@ -11,8 +11,8 @@ from typing import Any, TextIO
 class ProgressBar(AbstractContextManager["ProgressBar"]):
     """A progress bar that appears after `delay` seconds, and only on a terminal.
 
-    It is a tqdm bar, which disappears at the end. If a prompt owns the terminal, the bar is a single line
-    instead, because the prompt prints standard error line by line.
+    It is a tqdm bar, which disappears at the end. If an input prompt owns the terminal, the bar is a single line
+    instead, because that prompt prints standard error line by line.
     """
 
     def __init__(self, label: str, *, delay: float = 1.0, stream: TextIO | None = None) -> None:

@@ -1,4 +1,8 @@
-"""The rules of wildtalk. They choose the model, keep the history of the conversation, and make small talk."""
+"""The rules of wildtalk. They choose the model, keep the history of the conversation, and make small talk.
+
+A *backend* is an object that generates answers, usually with a language model. The *listening skill*
+answers with authored phrases, without a model.
+"""
 
 from __future__ import annotations
 
@@ -72,7 +76,7 @@ async def choose_model(ctx: rs.RuleContext) -> None:
 
 @module.rule(when=chosen.max_age(None).detached(), writes=model)
 async def use(ctx: rs.RuleContext) -> rs.Resign | None:
-    """Replace the stand-in with the chosen backend, unless the designer has put another backend into the slot."""
+    """Replace the `PendingBackend` with the chosen backend, unless the designer has put another backend into the slot."""
     if not isinstance(ctx[model], PendingBackend):
         return rs.Resign("there is another backend already")
     ctx[model] = cast("Backend | None", ctx.payload(chosen))
@@ -190,7 +194,7 @@ async def chat(ctx: rs.RuleContext) -> rs.Resign | None:
     shown = ""
 
     async def show() -> bool:
-        """Say the admitted sentences so far; return False once a sentence is refused."""
+        """Say the sentences that the gate has admitted so far; return False once it refuses a sentence."""
         nonlocal shown
         sayable, refused = utterance.text, False
         if gate is not None:
@@ -232,7 +236,7 @@ async def chat(ctx: rs.RuleContext) -> rs.Resign | None:
         ctx[rawio.output] = shown + INTERRUPTED if shown else settings.no_model
         return None
     except asyncio.CancelledError:
-        if shown:  # put the said words into the history, before the words that interrupted them
+        if shown:  # put the words said so far into the history, before the words that interrupted them
             remember(ctx, "assistant", shown + INTERRUPTED)
             ctx[rawio.output] = shown + INTERRUPTED
         raise
@@ -261,11 +265,11 @@ async def go_on(ctx: rs.RuleContext) -> rs.Resign | None:
     when=nlp.analysis.changed.where(may_suit),
     reads=(model, interloc.users, overheard, history),
     writes=(rawio.output, listening),
-    # This rule outranks modules that would only note a fact: in "I am Ann, my dog has died", only the name.
+    # This rule outranks modules that would only note a fact, such as the name in "I am Ann, my dog has died".
     weight=4.0,
 )
 async def comfort(ctx: rs.RuleContext) -> rs.Resign | None:
-    """Answer sorrow, news, corrections and requests for a performance.
+    """Answer sorrow, news, corrections and requests for a performance (a joke, a song, a game...).
 
     The rule also answers statements to which the listening skill has a reply.
     """

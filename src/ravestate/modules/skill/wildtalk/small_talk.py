@@ -1,4 +1,7 @@
-"""Functions for the rules of small talk: they use the listening skill and the gate, and find notes for the prompt."""
+"""Functions for the rules of small talk: they use the listening skill and the gate, and find notes for the prompt.
+
+The *listening skill* answers with authored phrases. The *gate* checks the sentences of a language model.
+"""
 
 from __future__ import annotations
 
@@ -162,7 +165,7 @@ def is_open(state: State) -> bool:
 
 
 async def follow_up(ctx: rs.RuleContext, heard: Heard) -> str:
-    """Return the skill's reply to a turn in a game or to an answer; an empty string for other utterances."""
+    """Return the skill's reply to a turn in a game, or to an answer to its own question; otherwise an empty string."""
     skill = await asyncio.to_thread(listener)
     continues = await asyncio.to_thread(skill.continues, heard, up_to_date(ctx, heard.text))
     return await listen(ctx, heard) if continues else ""

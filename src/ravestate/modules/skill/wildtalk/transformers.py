@@ -36,7 +36,7 @@ class TransformersBackend:
         """Take the settings. The model is not looked up or loaded yet.
 
         Args:
-            model: A folder with a model, or a model's name on the hub; it is downloaded once.
+            model: A folder with a model, or a model's name on the hub of Hugging Face, from where it is downloaded once.
             read_timeout: Seconds without a word after which the model counts as stuck.
         """
         self._name = model
@@ -188,7 +188,7 @@ class _Model:
 
         tokens: Any = self.tokenizer(prompt, return_tensors="pt", add_special_tokens=False).to(self.model.device)
         room = getattr(self.model.config, "max_position_embeddings", 0) or 0
-        if room:  # for the prompt and the answer together
+        if room:  # the number of tokens for the prompt and the answer together
             max_tokens = min(max_tokens, room - 1)
             tokens = {key: value[:, max_tokens - room :] for key, value in tokens.items()}
         # Write one answer at a time: two would be no faster, and they would share the random state of the process.

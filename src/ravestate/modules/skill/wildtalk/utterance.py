@@ -10,7 +10,7 @@ from ravestate.modules._text import without_controls
 # Signs that a model continues the conversation by itself, or shows the marks of its template.
 _ROLES = ("User", "Human", "Assistant", "System", "Bot", "AI")
 _MARKS = r"<\|[^|<>\n]{1,16}\|>|</?s>|\[/?INST\]|<(?:start|end)_of_turn>|^\#{2,4}\s"
-# Ends of a text that may become a mark, or the beginning of a sentence.
+# Ends of an unfinished text: a mark that may have begun, or the opening quotation mark of the next sentence.
 _BEGUN = re.compile(r"(?:<[|/]?[^|<>\n]{0,16}\|?|\[/?[INST]{0,4}|^\#{1,4}|[\"“‘(\[]+)\Z", re.MULTILINE)
 # Signs other than words, such as an emoji, belong to the sentence before them.
 _SENTENCE_END = re.compile(r"[.!?…。！？]+[\"”’)\]]*(?:\s+[^\w\s\"“‘(\[]+)*\s+(?=[\"“‘(\[]?\w)")
@@ -30,7 +30,8 @@ class Utterance:
     spaces. The utterance is `complete`, and ignores further pieces, after `sentences` sentences, or when the model
     begins to speak for another speaker.
 
-    Text at the end that may become a mark is held back, so the result does not depend on the size of the pieces.
+    The filter holds back an end that may become the mark of a speaker or a template. So the result does not depend on the
+    size of the pieces.
 
     Example:
         >>> utterance = Utterance("Rosie")
@@ -86,7 +87,7 @@ class Utterance:
 
     def _say(self, *, last: bool) -> str:
         text = self._written
-        # Everything before `sure` has been classified.
+        # Further pieces cannot change the meaning of the text before position `sure`.
         sure = len(text) if last else self._sure(text)
         start = self._past_thoughts(text)
         if start > sure:

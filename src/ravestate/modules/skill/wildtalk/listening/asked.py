@@ -1,8 +1,9 @@
 """The kind of a question or request (language/examples/asks.yaml), its area of life, and the words that it names.
 
-The listener looks up an answer by kind and area (areas.yaml, mostly recommendations and the agent's own tastes), or
-else by kind alone (asked.yaml). The words come from the parse: the options of a choice, the thing that the question is
-about, and question words such as *how many eggs*.
+The listener (the part that chooses the agent's reply) looks up an answer by kind and area, or else by kind alone
+(asked.yaml). The answers by kind and area (areas.yaml) are mostly recommendations and the agent's own tastes. The words
+come from the parse: the options of a choice, the thing that the question is about, and question words such as *how many
+eggs*.
 """
 
 from __future__ import annotations
@@ -27,15 +28,17 @@ from .roles import turned
 from .state import State
 
 ANSWER, EXACTLY = -10.3, -8.6
-"""The minimum score (a logit) of advice, which suits many questions, and the minimum score of an answer that must be
-exact. An answer to a different question from the same area of life scores -10 to -11."""
+"""`ANSWER`: the minimum score of advice, which suits many questions. `EXACTLY`: the minimum score of an answer that must be
+exact. The scores are logits of the cross-encoder (a network that compares two texts). An answer to a different question
+from the same area of life scores -10 to -11."""
 SURE, ORDERED, UNASKED = 0.4, 0.6, 0.8
-"""The minimum confidence in the kind of a question, in the kind of an order, and in the kind of any other utterance."""
+"""The minimum confidence in the kind of an utterance. `SURE`: of a question. `ORDERED`: of an order. `UNASKED`: of any
+other utterance."""
 ALIKE: Mapping[str, tuple[str, ...]] = {
     "choose": ("recommend",),
     "would_you": ("would_you", "favourite"),
 }
-"""Kind → the classes of an area whose answers suit it, the best first. By default, only the class of the kind itself."""
+"""Kind → the classes of an area whose answers suit it, the best first. For other kinds, only the class of the same name."""
 WORDING = word_set("repeat shorter say_word")
 """Kinds that ask the agent to say or repeat words. *Again* is not of these kinds if the utterance has other sentences."""
 OPEN = word_set("recommend should worth favourite would_you fact choose predict permit explain")
@@ -49,14 +52,14 @@ _YOU = word_set("you your yours yourself u ur")
 _POLITE = word_set("think know believe say tell guess suppose reckon")
 """Verbs that only introduce a question: *how old do you think he is*."""
 BY_MOVE = {"advice": "how_to", "opinion": "you_think"}
-"""Move → the kind of a question, if the classifier finds no kind."""
+"""Move (the next step of a good listener) → the kind of a question, if the classifier finds no kind."""
 LEAST_WRAPPED = 4
-"""The minimum number of words of a question that begins with *do you think*, including these words."""
+"""If a question has more words and punctuation marks than this, its opening *do you think* is left out."""
 _STATING = word_set("is are was were does did do has have")
 _PERSONAL = word_set("i we you it")
 _TIPS = word_set("tip tips advice suggestion suggestions")
 _OFFERED = _TIPS | word_set("idea ideas clue")
-"""Nouns for which a user asks the agent, as in *do you have any idea*: the question is not about the agent."""
+"""Nouns in questions such as *do you have any idea*. Such a question is not about the agent."""
 _FUTURE = word_set("will wo 'll going gonna would might ever still soon tomorrow")
 """Words of a question about the future."""
 BRIEF = 4
@@ -76,7 +79,7 @@ _BARE = word_set("not what something anything so else whatever")
 _TIMES = word_set("night evening afternoon day weekend hour time")
 _EMPTY = word_set("do have get go make")
 _NAMING = ("dobj", "nsubj", "nsubjpass", "pobj", "attr", "ROOT")
-"""The relations of a noun that a question is about, the likeliest first."""
+"""The grammatical relations in which to look for the noun that a question is about, the likeliest first."""
 _PART = ("det", "amod", "compound", "poss", "case", "nummod", "nmod")
 _WHICH = re.compile(
     r"\b(?:which|what) (?:one|of (?:them|the two|both))\b|\bwhich (?:would|should|do|is)\b", re.IGNORECASE
@@ -103,7 +106,8 @@ class Asked:
     """The question's class in asks.yaml."""
     area: Phrases | None
     values: Mapping[str, str]
-    """The values of the roles: ``first`` and ``second``, ``about``, ``word``, ``short``, ``picked``."""
+    """The values of the *roles*, the placeholders in phrases: ``first`` and ``second``, ``about``, ``word``, ``short``,
+    ``picked``."""
     groups: tuple[str, ...]
     """The groups of asked.yaml to try, the most specific first."""
 
@@ -156,7 +160,7 @@ def asked_in(
         seen: The analysis of the utterance.
         asking: The sentence that asks something, or an empty text.
         state: The state of the conversation, for *say that again*.
-        moves: The agent's likely next moves.
+        moves: The likely next moves of a good listener, such as to console.
         request: Whether the utterance is an order.
     """
     words = words_of(seen.tree, asking)
@@ -255,7 +259,7 @@ def area_of(phrases: Material, tree: Tree, words: Sequence[Word], kind: str) -> 
 
 
 def about(phrases: Material, tree: Tree, words: Sequence[Word]) -> str:
-    """Return the noun phrase that a question is about, from the agent's view; empty if there is none."""
+    """Return the noun phrase that a question is about, from the agent's view (*your dog* for *my dog*); empty if there is none."""
     for relation in _NAMING:
         for word in words:
             if word.dep != relation or word.pos not in ("NOUN", "PROPN") or word.lemma.lower() in phrases.vague:
@@ -321,7 +325,7 @@ def options_in(tree: Tree, words: Sequence[Word]) -> tuple[str, str, bool] | Non
 
 
 def _cuts(word: Word) -> bool:
-    """Return whether a word ends the words before an option: the option begins after it."""
+    """Return whether an option begins after this word."""
     return word.pos in _CUT or word.tag in ("JJR", "RBR", "WDT", "WP") or word.low in ("better", "either")
 
 
@@ -344,7 +348,7 @@ def _word(seen: Analysis) -> str:
 
 
 def _picked(phrases: Material, words: Sequence[Word], turn: int) -> str:
-    """Return as many things as the request names, of the kind that its noun names: three animals for *three animals*."""
+    """Return things of the kind that the request names, as many as it asks for: three animals for *three animals*."""
     for word in reversed(words):
         things = phrases.picks.get(word.lemma.lower(), ()) if word.dep != "npadvmod" else ()  # not "the day after"
         if things and word.pos in ("NOUN", "PROPN", "NUM", "ADJ", "VERB"):

@@ -20,7 +20,8 @@ _ASKED = word_set(
 )
 """Last words of questions that are worded like a statement: *you are not mad, are you?*, *is correct, yes?*"""
 FEW_WORDS = 3
-"""The maximum number of words of a short sentence. Short sentences resemble many others."""
+"""If an utterance has several sentences, its question must have at least this many words. Shorter sentences resemble many
+others."""
 SHORT = 4
 """The maximum number of words in a short answer."""
 _AMAZED = re.compile(r"\b(?:can|could|would) you (?:imagine|believe)\b(?: (?:that|it|this))?\W*$", re.IGNORECASE)

@@ -1,4 +1,7 @@
-"""Jokes, songs and stories, and small games: riddles, word chain, guessing an animal, knock knock."""
+"""Jokes, songs and stories, and small games: riddles, word chain, guessing an animal, knock knock.
+
+In word chain, each word begins with the last letter of the word before.
+"""
 
 from __future__ import annotations
 
@@ -14,7 +17,7 @@ from .state import Game, State
 from .wishes import Wish, fitting
 
 LONGEST = 6
-"""The maximum number of words in an utterance that may belong to a game."""
+"""The maximum number of words in a turn of most games. The solution of a riddle may have more words."""
 CHAINED = 2
 """The maximum number of words in the user's turn of word chain: *a tiger*."""
 CHAINING = 6
@@ -222,7 +225,7 @@ class Turn:
         return self._say("knock", "who", Game("knock", name), name=name.capitalize())
 
     def _say(self, kind: str, group: str, game: Game | None, **roles: str) -> Played:
-        """Return a phrase of the performance `kind`, and the state with the game after it."""
+        """Return a phrase of the performance `kind`, and the state after it, with the game `game`; None ends the game."""
         show = self._state.show if kind in ("play", "knock") else kind
         state = replace(self._state, game=game and replace(game, asides=0), show=show)
         return self._chance.choice(self._shows[kind][group]).format(**roles), state

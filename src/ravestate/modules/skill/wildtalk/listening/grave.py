@@ -1,4 +1,5 @@
-"""Grave remarks: death, violence, and words of people who may harm themselves. The listener does not answer them lightly.
+"""Grave remarks: death, violence, and words of people who may harm themselves. The listening skill does not answer them
+lightly.
 
 The explicit answers to distress come from another module (`agentqa`).
 """

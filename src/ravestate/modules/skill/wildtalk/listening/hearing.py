@@ -91,7 +91,7 @@ class Hearing:
     """The replies that suit the utterance, the best first."""
 
     def leave_out(self, said: str, area: str) -> None:
-        """Remove the replies of the same kind as an answer of the agent, and those of an area of life."""
+        """Remove the replies of the same kind as the agent's answer `said`, and the answers for the area of life `area`."""
         kind = next((one.kind.name for one in self.responses if said.endswith(one.line.text)), "")
         self.responses = [one for one in self.responses if one.kind.name != kind]
         if self.asked is not None and self.asked.area is not None and self.asked.area.name == area:
@@ -162,7 +162,7 @@ def unsuited(seen: Analysis, tone: str, lately: str, *, joy: bool = False) -> fr
     Args:
         seen: The analysis of the utterance.
         tone: The tone of the utterance.
-        lately: The tone of the conversation. Soon after a loss, only joy gets a cheerful reply, and nothing a funny one.
+        lately: The tone of the conversation. If it is sad, only joy gets a cheerful reply, and nothing gets a funny one.
         joy: Whether a good listener would surely rejoice.
     """
     text, move = seen.normal.text, seen.move

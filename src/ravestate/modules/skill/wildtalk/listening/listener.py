@@ -34,8 +34,8 @@ SHOWS = ("joke", "song", "story", "play")
 PLAINLY = 6
 """The maximum number of words of a request that names a performance, before the classifier is loaded."""
 BRIEF, BRIEFLY = 12, 12
-"""The maximum length of a sign of listening such as *mhm*, in characters, and the number of answers after which such a
-sign may return."""
+"""`BRIEF`: the maximum number of characters in a sign of listening such as *mhm*. `BRIEFLY`: the number of answers after
+which such a sign may return."""
 STANCES = ("like", "curious", "cool")
 THIRD = 0.4
 """The rank that a reply loses if it is the third question in a row."""
@@ -106,7 +106,7 @@ class Listener:
         return may_repair(seen) if state is None else repair_in(seen, state) is not None
 
     def performs(self, heard: Heard, state: State) -> bool:
-        """Return whether the utterance asks for a performance or belongs to it. No language model should answer it."""
+        """Return whether the utterance asks for a performance, or a game is in progress. Then no language model should answer."""
         return not is_crisis(heard.text) and (state.game is not None or self.wish(heard, state) is not None)
 
     def continues(self, heard: Heard, state: State) -> bool:
@@ -127,7 +127,7 @@ class Listener:
         return short or bool((seen.yesno.yes or seen.yesno.no) and size <= 4 and pending.closed)
 
     def knows(self, seen: Analysis, state: State) -> bool:
-        """Return whether a reply surely suits. Other modules answer words of danger, and names."""
+        """Return whether a reply surely suits. False for words of danger, *my name* and *forget*: other modules answer these."""
         said = f" {plain(seen.text)} "
         if is_crisis(seen.normal.text) or " forget" in said or " my name " in said:
             return False
@@ -250,7 +250,7 @@ class Listener:
         return None
 
     def _sources(self, hearing: Hearing, state: State, chance: random.Random) -> Iterator[_Source]:
-        """Yield the sources of the rows of order.yaml whose tags fit."""
+        """Yield the groups of phrases from each row of order.yaml whose tags fit the utterance."""
         for row in self._phrases.order:
             if not (row.needs <= hearing.tags and not (row.without & hearing.tags)):
                 continue
@@ -273,7 +273,8 @@ class Listener:
             yield _Source(asked.lines(self._phrases, hearing.tone or state.tone, question), asked=about)
 
     def _response(self, hearing: Hearing, state: State, chance: random.Random) -> Iterator[_Source]:
-        """Yield the replies that suit the utterance, the best first. After two questions, a third one counts less."""
+        """Yield the replies that suit the utterance, the best first. After two questions, a reply with a third question
+        ranks lower."""
         asked = len(state.said) > 1 and all(text.endswith("?") for text in state.said[-2:])
         for one in sorted(hearing.responses, key=lambda one: (THIRD if asked and one.line.asks else 0.0) - one.rank):
             yield _Source([[one.line]], one.weak, "" if one.weak or one.kind.tone == "funny" else one.kind.tone)
@@ -296,7 +297,8 @@ def _said_lately(template: str, text: str, state: State) -> bool:
 
 
 def _with_fewer_questions(sources: Iterator[_Source], state: State) -> Iterator[_Source]:
-    """Yield the sources. During a game, or if the user wants no questions, yield their questions after everything else."""
+    """Yield the sources. During a game, or if the user wants no questions, move the questions in these sources to the
+    end."""
     later: list[_Source] = []
     for source in sources:
         if not state.asks or state.game is not None:

@@ -33,7 +33,7 @@ class Material:
         """Kind of reply → its replies."""
         self.asked, self.areas = _phrases("asked"), _phrases("areas")
         self.vague = self.asked.pop("vague").words
-        """Nouns that name nothing, such as *thing*."""
+        """Nouns that name nothing in particular, such as *thing*."""
         self.area_by_word = {word: one.name for one in reversed(self.areas.values()) for word in one.words}
         self.picks: Mapping[str, Sequence[str]] = _read("picks")
         self.plain = _phrases("plain")

@@ -33,7 +33,7 @@ class Phrases:
 
     name: str
     groups: Mapping[str, tuple[Line, ...]]
-    """The name of a group → its phrases. The group ``say`` is always possible."""
+    """The name of a group → its phrases. The group ``say`` may always be used."""
     tone: str = ""
     words: frozenset[str] = frozenset()
     """The nouns and the verbs that are typical of such utterances."""

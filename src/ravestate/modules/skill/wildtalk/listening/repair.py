@@ -24,7 +24,7 @@ _MEANT = re.compile(
     r"|mean|said|asked(?: you)?|talked|spoke|wanted to know)(?: (?:about|for|of|that|whether|if))* (?P<what>(?!to\b|it\b|so\b|that\b|this\b|not\b"
     r"|something\b|yes\b|no\b|nothing\b).+)$"
 )
-"""A sentence in plain form (see `plain`) that says what the user meant."""
+"""A sentence in plain form (lower case, no punctuation; see `plain`) that says what the user meant."""
 _TOLD_TO = re.compile(r"\b(?:with|to) (?:my|a|the|him|her|them|somebody|some)\b|\b(?:yesterday|last|ago|today)\b")
 """Words of a report: *I was talking about it with my mother*."""
 _REJECTS = re.compile(

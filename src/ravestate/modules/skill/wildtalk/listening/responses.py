@@ -16,8 +16,8 @@ from .material import Material
 from .phrases import Line, Phrases
 
 FITTING, KNOWN = 1.2, 1.6
-"""The minimum grade of a reply that fits, and the minimum grade of a reply that surely suits. Readers judged the latter
-replies good in 70 % of the cases, and bad in 9 %."""
+"""`FITTING`: the minimum grade of a reply that fits. `KNOWN`: the minimum grade of a reply that surely suits. Readers called
+70 % of such replies good, and 9 % bad."""
 GENERAL = frozenset(("asks_fact", "asks_feeling", "asks_advice", "asks_favour", "tells_on", "answers", "nonsense"))
 """Kinds of reply that say little."""
 KIND = 0.3

@@ -1,4 +1,7 @@
-"""The parts of an utterance that phrases repeat: its thing, and noun phrases from the agent's view."""
+"""The parts of an utterance that the agent's phrases repeat: the thing that it is about, and other noun phrases.
+
+Both are *from the agent's view*: *your brother's dog* for *my brother's dog*. A *role* is a placeholder in a phrase.
+"""
 
 from __future__ import annotations
 

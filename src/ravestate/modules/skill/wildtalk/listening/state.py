@@ -1,4 +1,4 @@
-"""The memory of the listener in a conversation."""
+"""The memory of the listener (the part that chooses the agent's reply) in a conversation."""
 
 from __future__ import annotations
 
@@ -10,7 +10,7 @@ from .grave import is_crisis
 RECENT = 40
 """The number of latest phrases that the agent does not repeat."""
 DANGER = 5
-"""The number of turns for which the user may be in danger, after words of danger."""
+"""The number of turns, after words of danger, for which the user counts as in danger."""
 LASTING = 2
 """The number of turns for which a tone lasts."""
 
@@ -48,9 +48,10 @@ class Game:
     """A game in progress."""
 
     kind: str
-    """``riddle``, ``chain``, ``animal``, ``holder``, ``knock`` or ``play``; see `Wish`."""
+    """``riddle``, ``chain``, ``animal``, ``holder``, ``knock`` or ``play``; `wishes.Wish` explains them."""
     word: str = ""
-    """The riddle's question, the last word of the chain, the last question about the user's animal, or the agent's animal."""
+    """The riddle's question, the last word of the chain, the last question about the user's animal, or the agent's animal.
+    In a knock-knock joke, it is the name at the door."""
     used: tuple[str, ...] = ()
     turn: int = 0
     asides: int = 0
@@ -96,7 +97,7 @@ class State:
     """Whether the listener may ask questions. False after the user has asked for no more questions."""
 
     def toned(self, tone: str, lasts: int = LASTING) -> State:
-        """Return the state after an utterance with this tone. No other tone ends sadness."""
+        """Return the state after an utterance with this tone. While sadness lasts, no other tone replaces it."""
         left = max(0, self.turns - 1)
         if tone and (self.tone != "sad" or tone == "sad" or not left):
             return replace(self, tone=tone, turns=max(lasts, left) if tone == self.tone else lasts)

@@ -12,8 +12,9 @@ from .grave import is_grave
 from .state import LASTING
 
 LEAST = {"sad": 0.7, "angry": 0.8, "glad": 0.75, "funny": 0.6, "tired": 0.75}
-"""The minimum confidence in a tone. It is high, because most utterances of strangers have no clear tone. In a test with 200
-utterances (tones_rows.tsv), 83 % of those classified as funny were funny; for glad, 75 %; for sad, 58 %."""
+"""Tone → the minimum confidence in it. The confidences are high, because most utterances of strangers have no clear tone.
+In a test with 200 utterances (tones_rows.tsv), 83 % of those classified as funny were funny; for glad, 75 %; for sad, 58
+%."""
 DARK = ("sad", "angry", "tired")
 FELT: Mapping[str, str] = {
     **dict.fromkeys(SORROWS, "sad"),
@@ -24,9 +25,9 @@ FELT: Mapping[str, str] = {
 }
 """The name of a feeling → its tone."""
 SURE, GLAD = 0.65, 0.8
-"""The minimum confidence in a sad feeling, and the minimum confidence in any other feeling."""
+"""`SURE`: the minimum confidence in a sad feeling. `GLAD`: the minimum confidence in any other feeling."""
 LASTS, GRIEF = 5, 12
-"""The number of turns for which the tone of a feeling lasts, and the number of turns for grief in grave words."""
+"""`LASTS`: the number of turns for which the tone of a feeling lasts. `GRIEF`: the same for grief in grave words."""
 DOUBT = 0.4
 """From this confidence in a dark tone on, a glad feeling does not count."""
 
@@ -40,9 +41,8 @@ def tone_of(text: str) -> str:
 def heard_tone(seen: Analysis) -> tuple[str, int]:
     """Return the tone of an utterance, and the number of turns for which it lasts.
 
-    The tone is empty if none is sure.
-
-    Sorrow precedes the other feelings. A feeling says more than the classifier of tones.
+    The tone is empty if none is sure. Sorrow takes precedence over the other feelings. A feeling takes precedence over the
+    classifier of tones.
     """
     grave = is_grave(seen.normal.text)
     felt = [one for one in seen.feelings.values() if one.name in FELT and one.score >= _least(one)]

@@ -5,7 +5,7 @@ from __future__ import annotations
 import re
 
 LONGEST = 400
-"""The maximum number of characters that are read: the patterns take time that grows with the square of the length."""
+"""The maximum number of characters that `is_cry` reads: its pattern takes time that grows with the square of the length."""
 _NEWS = re.compile(
     r"\b(?:did|do) you (?:also |even )?know that\b|\bdid you (?:also |even )?know,? (?!that\b|who|what|where|when|why|how|which|whose|whether|if\b"
     r"|him\b|them\b|about|of\b|any|someb|me\b|it\b)[\w']+ .*\w",

@@ -20,12 +20,12 @@ one* may have half as many words."""
 MOST = 400
 """The maximum number of characters that are read: the patterns take time that grows with the square of the length."""
 LATELY = 3
-"""*Another one* asks for a performance only if one of this number of latest answers was a performance."""
+"""*Another one* asks for a performance only if one of the agent's last answers, up to this number, was a performance."""
 UNNAMED = 0.6
 """The minimum confidence in a request that does not name its performance: *hit me with a good one*."""
 
 _SHARES = {"joke": ("knock",), "play": ("riddle", "chain", "animal")}
-"""An act → the further performances for which it may ask."""
+"""An act (what an utterance asks for, such as ``joke``) → the further performances that the utterance may mean."""
 _HOLDER = re.compile(r"\b(?:think of|pick|choose) (?:an|some|any) animal\b")
 """The user asks the agent to think of an animal, which the user will guess."""
 _GUESSER = re.compile(r"\b(?:i|i'll|i will) (?:think of|pick|choose|have) (?:an|some|any) animal\b")
@@ -64,7 +64,11 @@ class Wish:
     """A request for a performance."""
 
     kind: str
-    """``joke``, ``song``, ``story``, ``riddle``, ``chain``, ``animal``, ``holder``, ``knock`` or ``play``."""
+    """``joke``, ``song``, ``story``, ``riddle``, ``chain``, ``animal``, ``holder``, ``knock`` or ``play``.
+
+    ``chain`` is word chain, and ``knock`` a knock-knock joke. In ``animal``, the agent guesses the user's animal; in
+    ``holder``, the user guesses the agent's animal. ``play`` stands for a game of the user's choice.
+    """
     thing: str = ""
     """The subject, in the user's words: *a green dragon*. For ``play``: the name of a game that the agent does not have."""
     words: tuple[str, ...] = ()
