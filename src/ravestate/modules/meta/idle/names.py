@@ -18,7 +18,8 @@ class Settings(rs.Settings):
     bored_after: Seconds = 15.0
     """Seconds without activity after which the agent is bored."""
     answer_time: Seconds = 25.0
-    """Seconds without activity after which the agent is bored while its question is open; at least ``bored_after``."""
+    """If the agent has just asked a question: seconds without activity after which the agent is bored. A value below
+    ``bored_after`` has no effect."""
     writing_time: Seconds = 20.0
     """Seconds since the last key press after which the agent is bored, if the user has typed a line but not sent it."""
     remarks: Annotated[int, Field(ge=0)] = 2

@@ -97,8 +97,8 @@ async def notice_delay(ctx: rs.RuleContext) -> None:
 async def notice_dismissal(ctx: rs.RuleContext) -> None:
     """Note whether the user asks for quiet, says goodbye or is sad. If the user asks for quiet, emit `hushed`.
 
-    The sentence model may take a few milliseconds, so it runs in a thread. This is a foreground
-    rule, so the silence begins only when the rule ends.
+    The sentence model, which compares meanings, may take a few milliseconds, so it runs in a thread. This is a
+    foreground rule, so the silence begins only when the rule ends.
     """
     meant, felt = await asyncio.to_thread(_understood, ctx.payload(rawio.input.changed))
     ctx[dismissed] = bool(meant & {"quiet", "farewell"})
@@ -108,7 +108,7 @@ async def notice_dismissal(ctx: rs.RuleContext) -> None:
 
 
 def _understood(text: str) -> tuple[frozenset[str], frozenset[str]]:
-    """Return the acts and the feelings in a text."""
+    """Return the conversational acts (such as a goodbye) and the feelings in a text."""
     sentences = heard(text)
     return frozenset(acts(sentences)), frozenset(feelings(sentences))
 

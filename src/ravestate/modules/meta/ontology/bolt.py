@@ -24,7 +24,7 @@ META = "_ravestate"
 """The label of the node that stores the format version."""
 
 LIVELY = 5.0
-"""The idle seconds after which the driver tests a connection before use, because the server may have restarted."""
+"""If a connection was idle for this many seconds, the driver tests it before use: the server may have restarted."""
 
 
 class BoltStore:
@@ -178,7 +178,7 @@ class BoltStore:
         """Do nothing: the server manages its log."""
 
     def undeclared(self, types: Types) -> list[str]:
-        """Return the labels of nodes on the server that are not in `types`."""
+        """Return the labels of the server's nodes, except the labels that are in `types`."""
         rows = self.read("MATCH (n) UNWIND labels(n) AS name RETURN DISTINCT name", {})
         return sorted({str(name) for [name] in rows} - {META, *types})
 

@@ -1,4 +1,4 @@
-"""Functions that open and copy a ladybug database.
+"""Functions that open and copy a database of ladybug, an embedded graph database.
 
 A damaged file can crash the process that opens it. So `survives` lets a separate process open the file first.
 """
@@ -22,13 +22,14 @@ LARGEST = 2**36
 """The bytes of address space that are reserved for the database file, and so the file's maximum size."""
 
 PATIENCE = 60.0
-"""The seconds that a trial in a separate process may take."""
+"""The seconds that a separate process may take to read the file; see `survives`."""
 
 FILE_FORMAT = 2
 """The version of the format of nodes and relations in the file; a new format has a greater number.
 
 Format 1 had a table for each type and a table for each relation. Ladybug takes 3.5 MB of main memory for a table of
-nodes, and 10 MB for a table of relations that has been written. Format 2 has only one table of each kind.
+nodes, and 10 MB for a table of relations after a write to it. Format 2 has one table for all nodes, and one for all
+relations.
 """
 
 META = "_ravestate"
@@ -38,18 +39,19 @@ NODE = "_node"
 """The table of all nodes. The id of a node begins with its type: ``City:...``."""
 
 RELATION = "_relation"
-"""The table of all relations. No name of a user's type, property or relation begins with ``_``."""
+"""The table of all relations. The names of the tables begin with ``_``, so they differ from all names of users."""
 
 NAME = "_name"
 """The column with the name of a relation."""
 
 
 def connect(path: Path, *, whole_log: bool = True) -> tuple[Any, Any]:
-    """Open a database, and return it with a connection to it.
+    """Open a database. Return the database, and a connection to it.
 
     Args:
         path: The database file; created if it is missing.
-        whole_log: Whether a damaged log is an error. If not, the log is read up to the damage, and the rest is cut off.
+        whole_log: Whether a damaged write-ahead log is an error. If not, the log is read up to the damage, and the rest
+            is cut off.
 
     Raises:
         Exception: The file has lost all of its tables (RuntimeError). For a damaged file, ladybug may raise any
@@ -63,7 +65,8 @@ def connect(path: Path, *, whole_log: bool = True) -> tuple[Any, Any]:
         buffer_pool_size=BUFFER,
         max_db_size=LARGEST,
         max_num_threads=1,
-        # A checkpoint moves the log into the file. The store does this later, because it could make the opening fail.
+        # A checkpoint moves the log into the file. The store does this later, because a failed checkpoint would make the
+        # opening fail.
         auto_checkpoint=False,
         throw_on_wal_replay_failure=whole_log,
     )
@@ -96,18 +99,18 @@ def _read_all(path: Path, *, whole_log: bool) -> None:
 
 
 def node_table(columns: Mapping[str, str]) -> str:
-    """Return the statement that creates the table of all nodes, with columns for properties: name → kind."""
+    """Return the statement that creates the table of all nodes. `columns` maps each property to its column's kind."""
     return f"CREATE NODE TABLE `{NODE}` ({', '.join(['`id` STRING PRIMARY KEY', *_listed(columns)])})"
 
 
 def relation_table(columns: Mapping[str, str]) -> str:
-    """Return the statement that creates the table of all relations, with columns for properties: name → kind."""
+    """Return the statement that creates the table of all relations. `columns` maps each property to its column's kind."""
     listed = [f"FROM `{NODE}` TO `{NODE}`", f"`{NAME}` STRING", *_listed(columns)]
     return f"CREATE REL TABLE `{RELATION}` ({', '.join(listed)})"
 
 
 def aside(name: str, kind: str) -> str:
-    """Return the name of a second column for a property `name`, when another kind of value occupies the first column.
+    """Return the name of a second column for a property, if values of another kind occupy the column `name`.
 
     Ladybug ignores the case of a column's name, so this name has the property's name in hexadecimal digits.
     """
@@ -115,7 +118,7 @@ def aside(name: str, kind: str) -> str:
 
 
 def meta_table() -> list[str]:
-    """Return the statements that create the table of the format."""
+    """Return the statements that create the table with the format's version."""
     return [
         f"CREATE NODE TABLE `{META}` (`key` STRING PRIMARY KEY, `value` INT64)",
         f"CREATE (:`{META}` {{`key`: 'format', `value`: {FILE_FORMAT}}})",
@@ -141,7 +144,7 @@ def copy_database(source: Any, target: Any) -> None:
     of_nodes, of_relations = _united(nodes), _united(relations)
     for statement in (*meta_table(), node_table(_kinds(of_nodes)), relation_table(_kinds(of_relations))):
         _rows(target, statement)
-    copied: dict[tuple[int, int], str] = {}  # ladybug's own number → id
+    copied: dict[tuple[int, int], str] = {}  # ladybug's own number of a node → the node's id
     for name, columns in nodes.items():
         for [node] in _rows(source, f"MATCH (n:`{name}`) RETURN n"):
             values = {"id": node["id"], **_moved(node, columns, of_nodes)}
@@ -162,7 +165,7 @@ def _columns(connection: Any, table: str) -> dict[str, str]:
 
 
 def _united(tables: Mapping[str, Mapping[str, str]]) -> dict[tuple[str, str], str]:
-    """Return a column for each property of all tables: name and kind → name of the column.
+    """Return a column for each property of all tables: name and kind of the property → name of the column.
 
     In format 1, two types that were never declared together may have properties of the same name but different kinds.
     """
@@ -183,7 +186,7 @@ def _kinds(united: Mapping[tuple[str, str], str]) -> dict[str, str]:
 def _moved(
     found: Mapping[str, Any], columns: Mapping[str, str], united: Mapping[tuple[str, str], str]
 ) -> dict[str, Any]:
-    """Return the properties that have a value, by their columns in the copy."""
+    """Return the values of a node or relation: column in the copy → value. Leave out properties without a value."""
     given = {united[one]: found.get(one[0]) for one in columns.items() if one in united}
     return {column: value for column, value in given.items() if value is not None}
 
@@ -201,7 +204,7 @@ def _number(found: Mapping[str, int]) -> tuple[int, int]:
 
 
 def _pattern(values: Mapping[str, Any]) -> str:
-    """Return the Cypher pattern of properties."""
+    """Return the part of a Cypher pattern that lists properties."""
     return "{" + ", ".join(f"`{key}`: $p_{key}" for key in values) + "}" if values else ""
 
 

@@ -35,10 +35,10 @@ from .tables import has_old_format, missing_tables, undeclared_types
 from .types import Types
 
 RESERVE = 16 * 2**20
-"""The bytes on the disk that must stay free after a write: ladybug cannot recover from a failed write."""
+"""This many bytes of the disk must stay free after a write, because ladybug cannot recover from a failed write."""
 
 LOG_LIMIT = 4 * 2**20
-"""The size of the write-ahead log, in bytes, at which the store moves the log's content into the database file."""
+"""When the write-ahead log is longer than this many bytes, the store moves the log's content into the database file."""
 
 MARK = "purge"
 """The key of a mark, which is in the file if deleted nodes have left bytes there."""
@@ -51,8 +51,10 @@ class EmbeddedStore:
 
     Committed writes are in the write-ahead log, on disk. If a write to that log fails, ladybug hangs in the next write,
     and ends the process when it closes the file. So the store checks the free space before each write. If a write still
-    fails, its incomplete record is cut off the log. The store then writes and closes nothing until
+    fails, the store cuts its incomplete record off the log. The store then writes and closes nothing until
     the disk has room again.
+
+    Deleted nodes leave bytes in the file. A purge removes these bytes: it rewrites the file.
     """
 
     def __init__(self, path: Path) -> None:
@@ -161,7 +163,7 @@ class EmbeddedStore:
     # ------------------------------------------------------------------------------------ tables
 
     def prepare(self, types: Types) -> None:
-        """Create the tables and columns that the types need and the file lacks. Copy a file of an older format."""
+        """Create the tables and columns that the types need and the file lacks. Bring a file of an older format up to date."""
         if types is self._prepared:  # no other process changes the file, so the tables are still there
             return
         if has_old_format(self._execute, str(self._path)):
@@ -285,9 +287,10 @@ class EmbeddedStore:
             log.warning("memory %s: %s: %s", self._path, what, kept)
 
     def rest(self) -> None:
-        """Purge the file, but not if a purge has failed since the last deletion.
+        """Purge the file, unless a purge has failed since the last deletion.
 
-        After such a failure, each pause would log the same warning again.
+        The worker thread calls this method in each pause between jobs. After a failure, each pause would log the same
+        warning again.
         """
         if not self._has_failed:
             self.purge()
@@ -331,7 +334,7 @@ class EmbeddedStore:
         self._shorten_log(limit=0)
 
     def close(self) -> None:
-        """Purge the file, move the log's content into it, and close it. If this fails, the next opening reads the log."""
+        """Purge the file, move the log's content into it, and close it. If the move fails, the next opening does it."""
         if self._stuck and not self._files.can_write():
             log.warning("memory %s stays open until the process ends: %s", self._path, self._stuck)
             return

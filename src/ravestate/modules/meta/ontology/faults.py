@@ -1,4 +1,4 @@
-"""The messages that users get when ladybug fails."""
+"""The messages that users get when ladybug fails (the embedded graph database)."""
 
 from __future__ import annotations
 
@@ -31,7 +31,7 @@ def is_foreign_log(said: str) -> bool:
 
 
 def is_about_log(said: str) -> bool:
-    """Return whether a message of ladybug about a file that cannot be opened may mean a damaged log."""
+    """Return whether the message of a failed opening may mean that the log is damaged."""
     return _NO_DAMAGE.search(said) is None
 
 

@@ -47,7 +47,7 @@ class MemoryFiles:
         return [file for file in self.present() if (match := self._match(file)) and match["kept"]]
 
     def logs(self) -> list[Path]:
-        """Return the files besides the database that have data, except logs that were set aside."""
+        """Return the side files that have data, except the checksum, and except logs that were set aside."""
         others = {self.path, self.probe, self._sum, *self.kept()}
         return [file for file in self.present() if file not in others and file.stat().st_size]
 
@@ -59,7 +59,7 @@ class MemoryFiles:
             return 0
 
     def can_write(self) -> bool:
-        """Return whether the system allows a file that is 1 MB longer than the log."""
+        """Return whether the system allows a file that is 1 MB longer than the log. To find out, write one."""
         try:
             with self.probe.open("wb") as file:
                 file.truncate(self.log_size())
@@ -78,7 +78,7 @@ class MemoryFiles:
         return self.path.exists() and (not self.path.is_file() or self.path.stat().st_size > 0)
 
     def make_private(self, *suffixes: str) -> None:
-        """Create missing side files that only the user can read. Ladybug would let everybody read them."""
+        """Create missing files with these suffixes, which only the user can read. Ladybug would let everybody read them."""
         for suffix in suffixes:
             with contextlib.suppress(OSError):  # ladybug will report the problem
                 os.close(os.open(self.beside(suffix), os.O_CREAT | os.O_RDWR, 0o600))
@@ -120,7 +120,7 @@ class MemoryFiles:
         return [file for file in self.present() if file.unlink(missing_ok=True) is None]
 
     def remove_rewrite(self) -> None:
-        """Remove an unfinished rewrite: a copy without deleted nodes. The database itself is whole."""
+        """Remove an unfinished rewrite: an incomplete copy of the database. The database itself is complete."""
         for file in self.present():
             if (match := self._match(file)) and match["new"] and not match["kept"]:
                 file.unlink(missing_ok=True)

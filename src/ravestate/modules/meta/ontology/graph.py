@@ -20,7 +20,7 @@ about them than their name."""
 
 
 class Graph:
-    """The operations on the graph in a store; each checks its arguments against the types."""
+    """The operations on the graph in a store. Each operation checks its arguments against the types."""
 
     def __init__(self, store: Store, types: Types) -> None:
         self._store = store
@@ -141,7 +141,10 @@ class Graph:
         )
 
     def _ends(self, node: Node, *, back: bool) -> list[tuple[str, dict[str, Value], Node]]:
-        """Return the name, properties and other end of each declared relation from a node; with `back`, to the node."""
+        """Return each declared relation from a node: its name, its properties, and the node at its other end.
+
+        With `back`, return the relations to the node.
+        """
         found: list[tuple[str, dict[str, Value], Node]] = []
         for relation, raw in self._edges(node, back=back):
             other = self._node(raw)
@@ -185,7 +188,7 @@ class Graph:
             return self._write(kept, self._types.stored(kept.type, missing))
 
     def _take_over(self, source: Node, name: str, target: Node, values: Mapping[str, Value]) -> None:
-        """Copy a relation to another pair of nodes. If this pair has the relation already, keep its properties there."""
+        """Copy a relation to another pair of nodes. If this pair has the relation already, its present values stay."""
         ends = self._ends(source, back=False)
         present = next((had for known, had, end in ends if (known, end.id) == (name, target.id)), dict[str, Value]())
         self._relate(source, name, target, self._types.stored(name, {**values, **present}))

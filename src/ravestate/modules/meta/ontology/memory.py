@@ -48,7 +48,7 @@ class Memory:
 
         Args:
             worker: The thread of the store; `close` releases it.
-            read_types: A function that reads the types; called in that thread.
+            read_types: A function that reads the types. Memory calls it in that thread.
         """
         self._worker = worker
         self._lock = threading.Lock()  # so that no job is queued after the release
@@ -145,12 +145,13 @@ class Memory:
     def together(self, operations: Callable[[Graph], T], /) -> Reply[T]:
         """Run several operations as one transaction: either all operations take effect, or none.
 
-        If memory is a file, no other operation runs between them. On a server, other programs may run operations.
+        If memory is a file, no other operation runs between these operations. On a server, operations of other programs
+        may.
 
         Args:
-            operations: A function that takes a `Graph`, called in memory's thread. A `Graph` has the operations of this
-                class except `create`. They return plain results, and take properties as mappings. Do not use the
-                `Graph` later.
+            operations: A function that takes a `Graph`. Memory calls it in memory's thread. A `Graph` has the operations
+                of this class except `create`. They return plain results, and take properties as mappings. Do not use
+                the `Graph` after the function has returned.
 
         Returns:
             The result of the function. If it raises an exception, all of its operations are rolled back.

@@ -1,4 +1,4 @@
-"""Functions that open memory at the place that the settings name: a file or a server."""
+"""Functions that open the agent's long-term memory. The settings name its place: a file or a server."""
 
 from __future__ import annotations
 
@@ -26,16 +26,16 @@ def types_of(settings: Settings) -> Types:
 
 
 def path_of(settings: Settings) -> Path | None:
-    """Return the path of the memory file, with links resolved; None for a memory on a server."""
+    """Return the path of the memory file, with symbolic links resolved, or None for a memory on a server."""
     if settings.url is not None:
         return None
     return Path(os.path.realpath((settings.path or default_path(settings.agent)).expanduser()))
 
 
 def open_memory(settings: Settings) -> Memory:
-    """Start to open memory at the place that the settings name, in another thread. Return the memory immediately.
+    """Start to open memory in another thread. Return the memory immediately.
 
-    ``memory.opened()`` raises the errors of the opening.
+    If memory cannot be opened, ``await memory.opened()`` raises the error.
     """
 
     path = path_of(settings)
@@ -55,6 +55,6 @@ def _file(path: Path) -> Any:
 def _server(settings: Settings) -> Any:
     from .bolt import BoltStore
 
-    assert settings.url is not None  # `open_memory` has checked it
+    assert settings.url is not None  # `open_memory` has checked that there is a URL
     password = "" if settings.password is None else settings.password.get_secret_value()
     return BoltStore(settings.url, settings.user, password, settings.database, settings.timeout)

@@ -80,7 +80,7 @@ class _FutureExecutor(Executor):
 
 
 def _named(what: str) -> Callable[[], None]:
-    """Return a function with this name, so that messages show which operation a rule waits for."""
+    """Return a function with the name `what`, so that messages show which operation a rule waits for."""
 
     def function() -> None: ...
 

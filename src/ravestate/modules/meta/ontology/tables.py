@@ -1,4 +1,4 @@
-"""The tables and columns that ladybug needs for types and relations."""
+"""The tables and columns that ladybug (the embedded graph database) needs for types and relations."""
 
 from __future__ import annotations
 
@@ -139,7 +139,7 @@ def _missing_columns(
 
 
 def _with_value(execute: Execute, table: str, column: str, owners: Iterable[str]) -> Iterator[str]:
-    """Yield the types or relations that have a value in a column."""
+    """Yield those of the `owners` (types or relations) that have a value in a column."""
     pattern = f"(n:`{table}`)" if table == NODE else f"()-[n:`{table}`]->()"
     for owner in owners:
         test = f"n.`id` STARTS WITH '{owner}:'" if table == NODE else f"n.`{NAME}` = '{owner}'"

@@ -49,7 +49,7 @@ def read_types(paths: Iterable[Path | Traversable]) -> Types:
 
 
 def types_in(paths: Iterable[Path]) -> Types:
-    """Return the built-in types together with the types of files. A file is read once, and again after a change.
+    """Return the built-in types together with the types of files. Read each file once, and again after a change.
 
     Raises:
         DeclarationError: A file is invalid or contradicts another file.
@@ -58,7 +58,7 @@ def types_in(paths: Iterable[Path]) -> Types:
     return _read(tuple((path.expanduser(), _state_of(path.expanduser())) for path in paths))
 
 
-@lru_cache(maxsize=8)  # cached, because each visitor to a page opens memory
+@lru_cache(maxsize=8)  # cached, because each visitor of a web page opens memory
 def _read(own: tuple[tuple[Path, object], ...]) -> Types:
     built_in = files("ravestate.modules.meta.ontology") / "types.yaml"
     return read_types([built_in, *(path for path, _ in own)])
@@ -163,7 +163,10 @@ class _Reader:
     def _name(
         self, file: str, node: yaml.Node, name: str, among: Mapping[str, object], others: Mapping[str, object]
     ) -> None:
-        """Register the name of a type or relation. Names may not be the same, or differ only by capitals."""
+        """Register the name of a type or relation.
+
+        A type and a relation may not share a name. Two names may not differ by capital letters alone.
+        """
         _check_name(file, node, name, "type or relation")
         for other in (*among, *others):
             if other.lower() == name.lower() and (other != name or other in others):

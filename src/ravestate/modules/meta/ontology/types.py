@@ -49,7 +49,7 @@ class Relating:
 class Types:
     """All declared types and relations, with checks of values. ``read_types`` reads them from files.
 
-    Every method raises `RuleError` for an undeclared type, relation or property, and for a value of another kind.
+    Every method raises `RuleError` for an undeclared type, relation or property, and for a value of a wrong kind.
     """
 
     def __init__(self, types: Mapping[str, Type], relations: Mapping[str, Relating]) -> None:
@@ -131,7 +131,7 @@ class Types:
             raise RuleError(f"{relation} does not go from {source} to {target}, but {known}")
 
     def check_end(self, type: str, relation: str, *, back: bool = False) -> None:
-        """Check that nodes of a type may be the source of a relation; with `back`, its target."""
+        """Check that nodes of a type may be the source of a relation; with `back`, the target of the relation."""
         self._check(type)
         ends = {pair[1 if back else 0] for pair in self.relating(relation).ends}
         if not any(self.is_a(type, end) for end in ends):

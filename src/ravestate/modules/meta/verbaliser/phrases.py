@@ -1,4 +1,4 @@
-"""Phrases by intent and language, from YAML files.
+"""Phrases by intent and language, from YAML files. An intent is a meaning that the agent wants to express.
 
 A file maps each intent to its languages, and each language to phrases. Parameters are in braces:
 

@@ -26,9 +26,10 @@ class Simulated(Protocol):
 
 
 def play(sim: Simulated, bag: str | Path, *, types: Types | None = None) -> int:
-    """Play a recorded bag into a simulated agent. Each message goes to the slots of its topic, at its time.
+    """Play a recorded bag into a simulated agent. Each message goes to the slots of its topic.
 
-    Time is virtual, so a bag of one hour takes seconds, and leads to the same decisions each time.
+    Each message comes at its recorded time. This time is virtual, so a bag of one hour plays in seconds. Every
+    playback leads to the same decisions.
 
     Args:
         sim: The simulation. The bag begins at the simulation's current time.
@@ -36,10 +37,10 @@ def play(sim: Simulated, bag: str | Path, *, types: Types | None = None) -> int:
         types: The types of the bag's messages, if the bag does not contain their definitions.
 
     Returns:
-        The number of messages that were written to slots.
+        The number of writes to slots. A message that goes to two slots counts twice.
 
     Raises:
-        PlatformError: The bag cannot be read, no slot of the agent follows one of its topics, or `rosbags` is missing.
+        PlatformError: The bag cannot be read, the agent's slots follow none of its topics, or `rosbags` is missing.
     """
     path = Path(bag)
     slots: dict[str, list[TopicSlot]] = {}

@@ -1,7 +1,7 @@
-"""The built-in bus, which replaces ROS for an agent and the stand-in robot on a machine without ROS.
+"""The built-in bus, which replaces ROS for an agent and a simulated robot on a machine without ROS.
 
-The bus is a server on a local TCP port. It exchanges frames (a head and a body), as a bridge process does
-(``children/pipe.py``), and passes messages and calls from one node to the others.
+The bus is a server on a local TCP port. It exchanges frames with its nodes, as a bridge process does
+(``children/pipe.py``). A frame has a head and a body. The bus passes messages and calls from one node to the others.
 """
 
 from __future__ import annotations
@@ -22,7 +22,7 @@ from .frames import Frames, Handle, Kind
 from .node import MakeLink
 
 AGAIN = 0.5
-"""The seconds between two attempts to reach the bus."""
+"""The time between two attempts to reach the bus (seconds)."""
 
 
 def host_and_port(address: str) -> tuple[str, int]:
@@ -54,7 +54,7 @@ class Bus:
         self._host, self._port = host, port
         self._nodes: set[_BusNode] = set()
         self.calls: dict[int, _Call] = {}
-        """The calls that wait for an answer. The keys are their numbers on the bus."""
+        """Number of a call on the bus → the call, for all calls that wait for an answer."""
         self._numbers = itertools.count(1)
 
     async def __aenter__(self) -> Bus:
@@ -98,7 +98,7 @@ class Bus:
                 call.caller.frames.tell(Kind.FAULT, "the node of the service is gone", call.channel, call.number)
 
     def find(self, kind: str, name: str) -> list[tuple[_BusNode, int, dict[str, Any]]]:
-        """Return the node, number and binding of each channel that has this kind and name."""
+        """Return each channel that has this kind and name: its node, its number, and its binding (its description)."""
         return [
             (node, channel, binding)
             for node in self._nodes
@@ -107,7 +107,7 @@ class Bus:
         ]
 
     def publish(self, binding: Mapping[str, Any], body: memoryview) -> None:
-        """Pass on a message to all subscribers of its topic."""
+        """Pass on a message to all subscribers of its topic. A subscriber with another type gets a warning instead."""
         for node, channel, other in self.find("subscriber", binding["name"]):
             if other["type"] == binding["type"]:
                 node.outlets[channel].put(body)
@@ -148,7 +148,7 @@ class Bus:
         }
 
     def graph(self, asker: _BusNode) -> dict[str, Any]:
-        """Return all topics and services. Count their publishers, subscribers and servers, without those of `asker`."""
+        """Return all topics and services. Their counts of publishers, subscribers and servers leave out `asker`."""
         topics: dict[str, dict[str, Any]] = {}
         services: dict[str, dict[str, Any]] = {}
         for node in self._nodes:
@@ -170,7 +170,7 @@ class Bus:
 
 @dataclass(frozen=True, slots=True)
 class _Call:
-    """An open call: the caller's node, channel and number, and the node that must answer."""
+    """An open call: the node that calls, its channel and its number for the call, and the node that must answer."""
 
     caller: _BusNode
     channel: int
@@ -250,7 +250,7 @@ class BusLink:
 
     @property
     def frames(self) -> Frames | None:
-        """The pipe to the bus; None if it is not ready."""
+        """The pipe to the bus; None while there is no working connection."""
         return self._frames if self._works else None
 
     def start(self) -> None:

@@ -1,4 +1,4 @@
-"""The open calls of a node (they wait for answers): calls of services, goals, and questions about the network."""
+"""The open calls of a node, which wait for answers: calls of services, goals of actions, questions about the network."""
 
 from __future__ import annotations
 
@@ -31,7 +31,7 @@ class Calls:
 
     Args:
         title: The name of the node in errors, for example ``ros1``.
-        types: The types of the answers.
+        types: The node's message types, which decode the answers.
     """
 
     def __init__(self, title: str, types: Types) -> None:
@@ -41,7 +41,7 @@ class Calls:
         self._open: dict[int, Call] = {}
 
     def open(self, channel: Channel, feedback: Callable[[Any], None] | None = None) -> Call:
-        """Return a new call. Whether it succeeds or not, pass it to `close` at the end."""
+        """Return a new call. At the end, pass the call to `close`, even if it has failed."""
         call = Call(next(self._numbers), asyncio.get_running_loop().create_future(), channel, feedback)
         self._open[call.number] = call
         return call
@@ -62,7 +62,10 @@ class Calls:
                 self._fail(call, fault)
 
     def answer(self, kind: Kind, number: int, body: memoryview) -> None:
-        """Handle a frame that answers a call: a result, feedback, a fault, or the description of the network."""
+        """Handle a frame from the bridge or the bus that answers a call.
+
+        The frame brings a result, feedback, a fault, or the description of the network.
+        """
         call = self._open.get(number)
         if call is None or call.future.done():
             return

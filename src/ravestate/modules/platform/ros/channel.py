@@ -1,4 +1,7 @@
-"""One topic, service or action of a node."""
+"""One topic, service or action of a node.
+
+A node reaches ROS through a bridge, which is a process that runs a ROS library, or through the built-in bus.
+"""
 
 from __future__ import annotations
 
@@ -13,7 +16,7 @@ from .types import Types
 
 
 class Carrier(Protocol):
-    """A carrier of a channel's messages: a `Node`."""
+    """The part of a `Node` that its channels use."""
 
     types: Types
 
@@ -30,12 +33,12 @@ class Channel:
 
     Attributes:
         number: The channel's number on the link (the bridge process or the bus).
-        binding: The description of the channel for the bridge.
+        binding: The description of the channel that the bridge or the bus gets.
         type: The full name of the type.
-        take: The function that gets each message of a subscription.
-        serve: The function that answers the requests to a service.
+        take: The function that gets the messages, if the channel subscribes to a topic.
+        serve: The function that answers the requests, if the channel offers a service.
         pause: The minimum time between two messages for `take` (seconds).
-        fault: Why the bridge could not make the channel; empty if it could.
+        fault: The reason why the bridge could not make the channel. The text is empty if there was no fault.
         pending: The newest message that has come during the pause.
         timer: The timer that ends the pause; None if there is no pause.
         owed: Whether the bridge waits for an acknowledgement.
@@ -76,7 +79,7 @@ class Channel:
     async def call(self, value: Any, feedback: Callable[[Any], None] | None = None) -> Any:
         """Call a service, or send a goal; return the response or the result.
 
-        If the caller is cancelled, the goal is cancelled.
+        If the task that waits for the answer is cancelled, the call or the goal is cancelled too.
 
         Raises:
             PlatformError: The value does not fit the type, no answer comes in time, or the server refuses the call.
@@ -93,7 +96,7 @@ class Channel:
 
         Args:
             body: The message.
-            newest: Whether it is the newest message that has come over its connection.
+            newest: Whether the message is the newest one that has come over its connection.
             owed: Whether the bridge waits for an acknowledgement before it sends the next message.
         """
         if not self.binding["latest"]:

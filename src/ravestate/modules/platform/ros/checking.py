@@ -15,7 +15,7 @@ from .slots import Binding
 
 KINDS = {"subscriber": "msg", "publisher": "msg", "service": "srv", "action": "action"}
 OTHERS = {"subscriber": "publishers", "publisher": "subscribers", "service": "servers", "action": "servers"}
-"""Kind of slot → the name in `Node.graph` of the nodes that the slot needs at the other end."""
+"""Kind of slot → the nodes that the slot needs at the other end, by the name that `Node.graph` uses for them."""
 PLACES = {"subscriber": "topics", "publisher": "topics", "service": "services", "action": "actions"}
 
 LOOKS = 8
@@ -35,7 +35,7 @@ class Bound(Protocol):
 
 @dataclass(frozen=True, slots=True)
 class Line:
-    """One line of a check.
+    """One line of the output: the result for one slot, or for one part of a robot.
 
     Attributes:
         good: Whether the slot or part is without faults.
@@ -49,10 +49,10 @@ class Line:
 
 
 async def check(node: Node, slots: Iterable[Bound]) -> list[Line]:
-    """Compare the slots or parts that are bound to one node with the network.
+    """Check all slots, or all parts of a robot, that use one node. Return a line for each.
 
     Raises:
-        PlatformError: ROS is not installed here, or there is no master.
+        PlatformError: ROS is not installed here, or no ROS master runs.
     """
     wanted = list(slots)
     lines: list[Line] = []
@@ -66,7 +66,7 @@ async def check(node: Node, slots: Iterable[Bound]) -> list[Line]:
 
 
 def look_at(slot: Bound, node: Node, graph: Mapping[str, list[dict[str, Any]]]) -> Line:
-    """Return the line about a slot: whether the network has the other end that the slot needs."""
+    """Return the line about a slot: whether the network has the nodes that the slot needs at the other end."""
     binding = slot.binding
     name = node.absolute(binding.name)
     bound = f"{binding.kind} of {name} ({binding.type})"

@@ -1,4 +1,7 @@
-"""Connections of ROS 1 between the agent and another node. Their messages do not pass through the bridge."""
+"""Connections of ROS 1 between the agent and another node.
+
+Their messages do not pass through the bridge (the process that runs rospy for the agent).
+"""
 
 from __future__ import annotations
 
@@ -14,9 +17,9 @@ LENGTH = struct.Struct("<I")
 BLOCK = 1 << 12
 """Read this many bytes in one call, unless the rest of a message is longer. A larger buffer takes longer to allocate."""
 TURN = 1 << 20
-"""After reading this many bytes, give the loop a turn."""
+"""After reading this many bytes, let the event loop run other tasks."""
 MESSAGES = 1000
-"""After reading this many messages, give the loop a turn."""
+"""After reading this many messages, let the event loop run other tasks."""
 LONGEST = 1 << 28
 """The maximum length of a message in bytes. A greater length means that the data are not a message."""
 

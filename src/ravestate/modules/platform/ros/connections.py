@@ -1,4 +1,7 @@
-"""The connections of a node of ROS 1 with the publishers and subscribers of its topics."""
+"""The connections of a node of ROS 1 with the publishers and subscribers of its topics.
+
+The bridge (the process that runs rospy for the agent) makes the connections and passes them to the agent.
+"""
 
 from __future__ import annotations
 
@@ -14,10 +17,10 @@ from .connection import FromPublisher, ToSubscriber
 
 @dataclass(eq=False, slots=True)
 class Publisher:
-    """A publisher of another node.
+    """Another node's publisher of a topic.
 
-    If the publisher latches (keeps its last message for late subscribers), `last` is this message. The
-    channels in `late` still wait for it.
+    If the publisher latches (keeps its last message for late subscribers), `last` is this message. The list `late`
+    holds the agent's channels that subscribed after this message and have not received it yet.
     """
 
     topic: str
@@ -28,7 +31,7 @@ class Publisher:
     late: list[Channel] = field(default_factory=list[Channel])
 
     def suits(self, channel: Channel) -> bool:
-        """Return whether the publisher has the type that a channel reads. The bridge reports a mismatch."""
+        """Return whether the publisher sends the type that a channel reads. If it does not, the bridge reports this."""
         binding = channel.binding
         return binding["type"] == self.type and self.md5 in (binding["md5"], "*")
 
@@ -37,7 +40,7 @@ class Connections:
     """The connections that the bridge has made and then passed to the agent.
 
     Args:
-        hang_up: A function that tells the bridge the number of a connection that has ended.
+        hang_up: A function that tells the bridge the number of each connection that has ended.
         warn: A function to call with a sentence for the log.
     """
 
@@ -60,7 +63,7 @@ class Connections:
                 asyncio.get_running_loop().call_soon(self._catch_up, publisher)
 
     def drop(self, channel: Channel) -> None:
-        """Stop passing messages to a channel. If no channel of the topic is left, disconnect from its publishers."""
+        """Stop passing messages to a channel. If the topic has no channel left, disconnect from its publishers."""
         readers = self._readers[channel.name]
         readers.remove(channel)
         if not readers:
@@ -79,13 +82,13 @@ class Connections:
         return True
 
     def to_subscriber(self, number: int, sock: socket.socket, topic: str, depth: int) -> ToSubscriber:
-        """Take over a connection with a subscriber. At most `depth` messages wait for the subscriber."""
+        """Take over a subscriber's connection from the bridge. At most `depth` messages wait for the subscriber."""
         connection = ToSubscriber(sock, partial(self._lost, number), depth)
         self._all[number] = self._subscribers.setdefault(topic, {})[number] = connection
         return connection
 
     def from_publisher(self, number: int, sock: socket.socket, publisher: Publisher, first: bytes) -> None:
-        """Take over a connection with a publisher. The bytes `first` were already read from it."""
+        """Take over a publisher's connection from the bridge, which has already read the bytes `first` from it."""
         self._publishers[number] = publisher
         take, lost = partial(self._take, publisher), partial(self._lost, number)
         warn = partial(self._warn_of, publisher)
@@ -109,7 +112,7 @@ class Connections:
     def _take(self, publisher: Publisher, body: memoryview, newest: bool) -> None:  # a callback
         if publisher.latching:
             publisher.last = body
-            publisher.late.clear()  # the late channels get this message
+            publisher.late.clear()  # the late channels get this newer message below
         for channel in list(self._readers.get(publisher.topic, ())):
             if publisher.suits(channel):
                 self._offer(channel, body, newest)

@@ -10,14 +10,14 @@ from ravestate.errors import PlatformError
 ENDINGS = {"msg": ".msg", "srv": ".srv", "action": ".action"}
 
 PARTS = {"srv": ("Request", "Response"), "action": ("Goal", "Result", "Feedback")}
-"""Kind of definition → the messages in such a file, in order."""
+"""Kind of definition → the ends of the names of the messages in its file, in the file's order."""
 
 COMMON = {
     "std_srvs/srv/Empty": "---",
     "std_srvs/srv/SetBool": "bool data\n---\nbool success\nstring message",
     "std_srvs/srv/Trigger": "---\nbool success\nstring message",
 }
-"""The services that most robots have, for machines on which their packages are not installed."""
+"""The definitions of the services that most robots offer. A machine without the package std_srvs uses these."""
 
 
 def full_name(name: str, kind: str = "msg") -> str:
@@ -93,7 +93,8 @@ GOAL_TOPICS = {
     "ActionResult": "std_msgs/Header header\nactionlib_msgs/GoalStatus status\n{}Result result",
     "ActionFeedback": "std_msgs/Header header\nactionlib_msgs/GoalStatus status\n{}Feedback feedback",
 }
-"""The messages of an action's topics in ROS 1. Key: the end of the message's name; value: the message's text."""
+"""The messages of an action's topics in ROS 1. Key: the end of the message's name. Value: the text of the message's
+definition; ``{}`` is the place of the action's name."""
 
 
 def part_names(name: str, version: int) -> list[str]:

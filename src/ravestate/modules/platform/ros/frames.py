@@ -1,4 +1,4 @@
-"""The agent's end of the pipe to a bridge process: frames over a socket, without blocking the loop.
+"""The agent's end of the pipe to a bridge (a process that runs a ROS library): frames over a socket.
 
 ``children/pipe.py`` is the other end, and describes the frames.
 """
@@ -140,7 +140,7 @@ class Frames:
         self._parse()
 
     def _parse(self) -> None:
-        """Handle the complete frames. After `TURN` frames, read no more until the loop has had a turn."""
+        """Handle the complete frames. After `TURN` frames, read no more until the event loop has run other tasks."""
         rest, start = self._rest, 0
         for _ in range(TURN):
             if self._closed or len(rest) - start < HEAD.size:

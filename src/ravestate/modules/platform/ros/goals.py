@@ -1,4 +1,7 @@
-"""Actions of ROS 1. An action consists of five topics (the protocol of actionlib), so the agent needs no package for it."""
+"""Actions of ROS 1. In the protocol of actionlib, an action consists of five topics.
+
+So the agent uses an action through channels of topics, and does not need the package actionlib.
+"""
 
 from __future__ import annotations
 
@@ -20,7 +23,7 @@ AGAIN = 0.2
 """If the server has shown no sign of a goal after this many seconds, send the goal again. Servers ignore repeated goals."""
 SUCCEEDED = 3
 ENDS = {2: "cancelled", 8: "cancelled", 4: "aborted", 5: "refused", 9: "lost"}
-"""The final states of a goal that did not succeed, as in actionlib_msgs/GoalStatus."""
+"""State in actionlib_msgs/GoalStatus → its name in errors, for the final states of a goal that did not succeed."""
 
 
 @dataclass(eq=False, slots=True)
@@ -29,18 +32,19 @@ class _Goal:
     feedback: Callable[[Any], None] | None
     listed: asyncio.Event = field(default_factory=asyncio.Event)
     tracked: bool = False
-    """Whether a status of the server has listed the goal. Feedback alone does not count: a status that
-    the server sent before it got the goal may come after the feedback. The goal would then seem lost."""
+    """Whether a status message of the server has listed the goal. Feedback does not set this value, because after the
+    feedback, an older status message may arrive. The server sent this message before it got the goal, so the message does
+    not list the goal. If the feedback had set the value, the goal would then seem lost."""
 
 
 class GoalTopics:
-    """An action of ROS 1: the topics ``goal`` and ``cancel`` of a server, and its ``status``, ``feedback`` and ``result``.
+    """An action of ROS 1: ``goal`` and ``cancel`` go to the server; ``status``, ``feedback`` and ``result`` come from it.
 
     Args:
         node: The node.
         name: The name of the action.
         type: The full name of the action's type. The node has already loaded the type.
-        timeout: A server must list a goal within this many seconds.
+        timeout: A server must react to a goal (with a status, feedback or a result) within this many seconds.
     """
 
     def __init__(self, node: Node, name: str, type: str, timeout: float) -> None:
@@ -64,7 +68,7 @@ class GoalTopics:
         ]
 
     async def call(self, value: Any, feedback: Callable[[Any], None] | None = None) -> Any:
-        """Send a goal; return the result. If the caller is cancelled, the goal is cancelled.
+        """Send a goal; return the result. If the task that waits is cancelled, the goal is cancelled too.
 
         Raises:
             PlatformError: The value does not fit the type, there is no server, or the goal ends without a result.
@@ -84,7 +88,7 @@ class GoalTopics:
             del self._goals[number]
 
     async def _offer(self, number: str, goal: _Goal, message: Any) -> None:
-        """Send a goal again and again until its server lists it, because the topics may not be connected yet."""
+        """Send a goal again and again until the server reacts to it, because the topics may not be connected yet."""
         try:
             async with asyncio.timeout(self._timeout):
                 while not goal.listed.is_set():

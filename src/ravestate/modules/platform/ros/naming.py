@@ -27,7 +27,7 @@ def resolve(name: str, node: str, namespace: str, remap: Mapping[str, str]) -> s
         name: ``/absolute``, ``relative`` to the namespace, or ``~private`` to the node.
         node: The node's name, without its namespace.
         namespace: The namespace, such as ``/robot``.
-        remap: The names to replace, with their new names. All names may be absolute, relative or private.
+        remap: Old name → new name. All names may be absolute, relative or private.
     """
     absolute = _absolute(name, node, namespace)
     for old, new in remap.items():
@@ -49,9 +49,9 @@ def quality(qos: str | Mapping[str, Any] | None, *, depth: int, latch: bool) -> 
     """Return a quality of service with all its values.
 
     Args:
-        qos: The name of a profile, or some of the values ``depth``, ``reliability`` and ``durability``. None is the
-            default.
-        depth: How many messages to queue at most, if `qos` has no depth.
+        qos: The name of a profile, or some of the values ``depth``, ``reliability`` and ``durability``. None means the
+            profile ``default``, but with the argument `depth`.
+        depth: The maximum number of messages in the queue, if `qos` sets no depth.
         latch: Whether late subscribers get the last message.
 
     Raises:

@@ -1,4 +1,7 @@
-"""A node: it connects an agent with topics, services and actions, through one bridge or bus."""
+"""A node: it connects an agent with topics, services and actions, through one bridge or bus.
+
+A bridge is a process that runs a ROS library for the agent. The bus is a server that replaces ROS.
+"""
 
 from __future__ import annotations
 
@@ -27,7 +30,8 @@ TOLD = 100
 """A node logs at most this many different texts. A text of level `info`, or a new link (see `Link`), resets the
 count."""
 WAITING = 1000
-"""At most this many frames wait while the bridge starts. If there are more, the node drops the oldest ones."""
+"""At most this many frames (units of data for the bridge) wait while the bridge starts. If there are more, the node drops
+the oldest ones."""
 LEAVING = 2.0
 """A node that is closed may take this many seconds to send its last messages."""
 
@@ -61,7 +65,7 @@ class Node:
 
     Args:
         title: The name of the node in logs and errors, for example ``ros1``.
-        types: The types of its messages.
+        types: The types of the node's messages.
         make_link: A function that makes the link.
         name: The node's name.
         namespace: The namespace of relative names.
@@ -90,7 +94,7 @@ class Node:
         self.bound: dict[str, Channel | GoalTopics] = {}
         """The channels of the slots that publish or call, by the slots' names."""
         self.goals: dict[str, set[asyncio.Future[Any]]] = {}
-        """The open goals of each slot, by the slots' names."""
+        """The open goals of actions, by the names of the slots that sent them."""
         self.ready = asyncio.Event()
         """An event that is set while the link works."""
         number = next(_nodes)
@@ -104,10 +108,10 @@ class Node:
         self._failed = failed
         self._connections = Connections(partial(self._tell, Kind.HANGUP, 0), self._warn)
         self._latched: dict[str, memoryview] = {}
-        """The last message of each topic with a channel that latches."""
+        """Topic → its last message, if one of the topic's channels latches (keeps this message for late subscribers)."""
         self._numbers = itertools.count(1)
         self._calls = Calls(title, types)
-        self._waiting: deque[tuple[Kind, int, int, memoryview | bytes]] = deque(maxlen=WAITING)  # frames without a link
+        self._waiting: deque[tuple[Kind, int, int, memoryview | bytes]] = deque(maxlen=WAITING)  # frames for a link
         self._told: set[str] = set()  # the texts that are already in the log
         self._preparing: asyncio.Future[Any] | None = None
         self._tasks: set[asyncio.Task[None]] = set()
@@ -159,7 +163,7 @@ class Node:
         return self._open("publisher", topic, type, {"latch": latch, "depth": qos["depth"], "qos": dict(qos)})
 
     def client(self, service: str, type: str, *, timeout: float) -> Channel:
-        """Return a channel to call a service, with a time-out in seconds."""
+        """Return a channel to call a service. A call fails if no answer comes within `timeout` seconds."""
         return self._open("client", service, type, {"timeout": timeout}, "srv")
 
     def offer(self, service: str, type: str, serve: Callable[[Any], Awaitable[Any]]) -> Channel:
@@ -241,7 +245,7 @@ class Node:
             self._waiting.append((kind, channel, number, body))
 
     def publish(self, channel: Channel, body: memoryview) -> None:
-        """Send a message directly to the subscribers that are connected; if there are none, send it to the bridge."""
+        """Send a message to the subscribers that are connected directly; if there are none, send it to the bridge."""
         if channel.latches:
             self._latched[channel.name] = body
         if not self._connections.send(channel.name, body):
@@ -262,7 +266,7 @@ class Node:
         self.send(Kind.CALL, channel.number, call.number, body)
         timeout = channel.binding["timeout"]
         try:
-            if acts:  # no time limit: the bridge watches for a server, and a goal may take arbitrarily long
+            if acts:  # no time limit: the bridge limits the wait for a server, and a goal may take arbitrarily long
                 return await call.future
             async with asyncio.timeout(timeout):
                 return await call.future
@@ -279,7 +283,7 @@ class Node:
             self._calls.close(call)
 
     async def graph(self, timeout: float = 10.0) -> dict[str, list[dict[str, Any]]]:  # noqa: ASYNC109  # a public name
-        """Return the network's ``topics``, ``services`` and ``actions``: names, types, and how many nodes use them.
+        """Return the network's ``topics``, ``services`` and ``actions``, each with name, types and numbers of users.
 
         Raises:
             PlatformError: The bridge fails, or does not answer within `timeout` seconds.
@@ -360,7 +364,7 @@ class Node:
     def _connect(self, kind: Kind, number: int, what: dict[str, Any]) -> None:
         """Take over a connection that the bridge passes on."""
         frames = self._frames
-        assert frames is not None  # the connection comes from this pipe
+        assert frames is not None  # the connection has come through this pipe
         sock = frames.passed()
         if kind is Kind.PUBLISHER:
             first: str = what.pop("first")
@@ -371,8 +375,8 @@ class Node:
             connection.send(body)
 
     def take(self, channel: Channel, body: memoryview) -> None:
-        """Decode a message, and pass it to the function of the channel that subscribes."""
-        assert channel.take is not None  # the channel subscribes
+        """Decode a message, and pass it to the `take` function of its channel."""
+        assert channel.take is not None  # a channel that gets messages is a subscriber
         try:
             channel.take(self.types.decode(body, channel.type))
         except PlatformError as error:

@@ -1,4 +1,7 @@
-"""Find the ROS installation on this machine, and the interpreter and the environment for a bridge."""
+"""Find the ROS installation on this machine, and the interpreter and the environment for a bridge.
+
+A bridge is a process that runs a ROS library for the agent.
+"""
 
 from __future__ import annotations
 
@@ -19,7 +22,7 @@ from ravestate.folders import user_folder
 CHILDREN = Path(__file__).with_name("children")
 
 PATIENCE = 10.0
-"""If an interpreter has not answered after this many seconds, assume that it lacks the package."""
+"""If an interpreter does not say within this many seconds that it has a package, assume that it lacks the package."""
 
 ROS1_MEND = "ROS 1 needs rospy: apt-get install python3-rospy ros-core, or name the Python that has it in ros1.python"
 ROS2_MEND = (
@@ -33,12 +36,12 @@ class Place:
     """A bridge's program, with the interpreter and the environment of a ROS installation.
 
     Attributes:
-        name: The name in messages.
+        name: The name of the ROS version in messages: ``ros1`` or ``ros2``.
         program: The file's name in the folder `CHILDREN`.
         python: The interpreter.
         setup: A shell script to source first; None if there is none.
         environment: Environment variables to set.
-        mend: The remedy that the message about a failed start names.
+        mend: The remedy. The message about a failed start ends with it.
     """
 
     name: str
@@ -69,7 +72,7 @@ class Place:
 def ros1_place(python: Path | None) -> Place:
     """Return the place of rospy.
 
-    The order is: the interpreter `python`, the sourced ROS 1, a ROS 1 in /opt/ros, and Debian's rospy.
+    The search order is: the interpreter `python`, the sourced ROS 1, a ROS 1 in /opt/ros, and Debian's rospy.
 
     Raises:
         PlatformError: There is no rospy.
@@ -89,9 +92,12 @@ def ros1_place(python: Path | None) -> Place:
 def ros2_place(python: Path | None, backend: str = "auto") -> Place:
     """Return the place of rclpy or DDS.
 
-    If the settings name an interpreter, the place is this interpreter. With the backend ``auto``, it then runs rclpy, or
-    DDS if it has only DDS. Otherwise, the order is: the sourced ROS 2, a ROS 2 in /opt/ros, the agent's own environment,
-    and the environment of ``make ros``. For DDS, the order is: the agent's own environment, and that of ``make ros``.
+    If `python` is given, this interpreter runs the bridge. With the backend ``auto``, the bridge then uses rclpy, or
+    DDS if the interpreter has only DDS.
+
+    Without `python`, the search order for rclpy is: the sourced ROS 2, a ROS 2 in /opt/ros, the agent's own environment,
+    and the environment of ``make ros``. For DDS, it is: the agent's own environment, and the environment of ``make ros``.
+    The backend ``auto`` looks for rclpy first, then for DDS.
 
     Args:
         python: The interpreter that the settings name, or None.

@@ -1,4 +1,4 @@
-"""A bridge process: it starts when it is first used, starts again if it dies, and ends cleanly."""
+"""A bridge process, which runs a ROS library for the agent. It starts again if it dies, and ends cleanly."""
 
 from __future__ import annotations
 
@@ -16,8 +16,8 @@ from .frames import Frames, Handle, Kind
 from .places import Place
 
 BACK_OFF = (0.1, 0.3, 1.0, 3.0)
-"""The waits before a new process replaces a dead one (seconds). Each death leads to a longer wait, until a process does
-some work."""
+"""The waits before a new process replaces a dead one (seconds). Each further death leads to the next, longer wait. After
+a process has done some work, the waits begin with the shortest again."""
 
 ENDING = 3.0
 """A process may take this many seconds to end cleanly."""

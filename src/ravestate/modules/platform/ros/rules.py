@@ -26,7 +26,7 @@ class NodeSettings(rs.Settings):
     """The settings that a node of ROS 1 and a node of ROS 2 have in common."""
 
     node: str = "ravestate"
-    """The beginning of the node's name. The number of the agent's process follows it."""
+    """The beginning of the node's name. After it comes the id of the agent's process."""
     namespace: str = ""
     """The namespace of relative names, such as ``/robot``."""
     remap: dict[str, str] = pydantic.Field(default_factory=dict[str, str])
@@ -96,7 +96,7 @@ def connect(
         module: ``ros1`` or ``ros2``.
         version: 1 or 2.
         node: The module's slot for the node.
-        make_node: A function that makes a node from the module's settings and a function for failures.
+        make_node: A function that makes a node. Its arguments are the module's settings and a function to call on failure.
     """
 
     @module.rule(when=rs.startup.detached(), writes=node, detached=True, background=True)
@@ -120,7 +120,7 @@ def connect(
 
 
 def follow_clock(ctx: rs.RuleContext, node: Node) -> None:
-    """Let the context's clock follow the topic ``/clock``: it runs at the same speed, and stops at the same times.
+    """Let the context's clock follow the topic ``/clock``. Both then run at one speed, and stop at the same times.
 
     Raises:
         PlatformError: ROS is not installed here.

@@ -97,7 +97,7 @@ class Goal:
     task: asyncio.Task[Any] | None = None
 
     def follow(self, task: asyncio.Task[Any]) -> None:
-        """Pass the outcome of the task that sends the goal to the sender of the goal."""
+        """When `task` ends, which sends the goal to the server, pass its outcome to the goal's sender."""
         self.task = task
         task.add_done_callback(self._end)
 
@@ -124,8 +124,8 @@ class Declarations:
 
     Args:
         version: 1 or 2.
-        module: The module ``ros1`` or ``ros2``. A designer's module with such slots requires it.
-        node: The module's slot with the node of the context.
+        module: The module ``ros1`` or ``ros2``. A designer's module on which slots are declared here requires it.
+        node: The slot of `module` that holds the context's node.
     """
 
     def __init__(self, version: Literal[1, 2], module: rs.Module, node: rs.Slot[Node | None]) -> None:
@@ -389,7 +389,7 @@ async def perform(ctx: rs.RuleContext, slot: ActionSlot, goal: Any) -> Any:
 
 
 def _failure(task: asyncio.Task[Any]) -> str:
-    """Return why a goal has no result; empty if it has one."""
+    """Return the reason why a goal has no result, or an empty text if the goal has one."""
     return "the goal was cancelled" if task.cancelled() else str(task.exception() or "")
 
 

@@ -25,8 +25,8 @@ class Types:
     """The types of ROS 1 or ROS 2 that an agent uses.
 
     Args:
-        version: 1 or 2. The wire format of ROS 2 is CDR.
-        definitions: The definition files for types that the library lacks.
+        version: The version of ROS: 1 or 2. The wire format of ROS 2 is CDR.
+        definitions: The definition files for types that the library `rosbags` lacks.
     """
 
     def __init__(self, version: Literal[1, 2], definitions: Definitions | None = None) -> None:
@@ -37,7 +37,7 @@ class Types:
 
     @property
     def store(self) -> Any:
-        """The library's store of types. The first use loads the library, which takes a while."""
+        """The store of types from `rosbags`. The first use loads the library, which takes a while."""
         if self._store is None:
             with self._loading:
                 if self._store is None:
@@ -207,7 +207,7 @@ class Types:
         return found
 
     def ros1_definition(self, name: str) -> tuple[str, str]:
-        """Return the text (empty for a service) and the MD5 sum by which ROS 1 identifies a message or service type."""
+        """Return the definition's text (empty for a service) and the MD5 sum. ROS 1 identifies a type by these two."""
         if name.split("/")[1] == "msg":
             return self.store.generate_msgdef(name, ros_version=1)
         text = "".join(self._hashed(f"{name}_{title}") for title in PARTS["srv"])
@@ -257,13 +257,13 @@ def _array(items: Any, base: str, count: int, path: str) -> Any:
 
     try:
         given = numpy.ravel(memoryview(items) if isinstance(items, bytes) else items)
-        with numpy.errstate(invalid="ignore"):  # a number that is not finite; it is refused below
+        with numpy.errstate(invalid="ignore"):  # for infinite numbers and NaN, which the check below refuses
             array = given.astype({"byte": "uint8", "octet": "uint8", "char": "uint8"}.get(base, base), copy=False)
     except (ValueError, TypeError, OverflowError) as error:
         raise PlatformError(f"{path} takes numbers ({base}): {error}") from error
     if count and len(array) != count:
         raise PlatformError(f"{path} takes {count} values, not {len(array)}")
-    # numpy cuts a fraction off, and wraps a number that is too large.
+    # numpy cuts off a fraction, and wraps a number that is too large.
     if given.dtype != array.dtype and not base.startswith("float") and (wrong := given[given != array]).size:
         raise PlatformError(f"{path} takes {base}, not {wrong[0]!s}")
     return array

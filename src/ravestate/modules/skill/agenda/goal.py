@@ -1,4 +1,4 @@
-"""Declare goals. A goal is a rule of its module, which pursues the goal; other rules end the goal."""
+"""Declare goals. One rule of the designer's module pursues the goal; other rules of the module end the goal."""
 
 from __future__ import annotations
 
@@ -140,7 +140,7 @@ def goal(
             )
         words = await _worded(ctx, texts, state.tries) if intent is None else ""
         over = done is None
-        ctx[said] = words if intent is None else intent  # first: words that the slot refuses are no try
+        ctx[said] = words if intent is None else intent  # if the slot refuses the words, this is no try
         ctx[goals].add(whole, GoalState("done" if over else "pursued", state.tries + 1, ctx.now))
         return rs.Retire("the goal's words were said") if over else None
 

@@ -20,7 +20,8 @@ class GoalState:
     """The state of a goal.
 
     Attributes:
-        status: ``open`` until the goal is first pursued, then ``pursued``; in the end ``done`` or ``dropped``.
+        status: ``open`` until the goal is first pursued (the agent says its words), then ``pursued``; in the end ``done``
+            or ``dropped``.
         tries: How many times the goal has been pursued.
         since: The time of the last try, in seconds since the context began.
     """
@@ -50,12 +51,12 @@ class Settings(rs.Settings):
 module = rs.Module("agenda", requires=[rawio, idle, verbaliser], settings=Settings)
 
 opportunity = module.signal("opportunity", payload=float)
-"""The agent may pursue one goal: neither side is talking, and the last pursuit is long enough ago. The payload is the
-time on the context's clock (seconds)."""
+"""The agent may pursue one goal: neither the agent nor the user is talking, and the last pursuit is long enough ago. The
+payload is the time on the context's clock (seconds)."""
 
 goals: rs.Collection[GoalState] = module.collection("goals")
 """Name of a goal's rule → the goal's state, for each goal that was pursued, reached or dropped."""
 
 topics: rs.Collection[str] = module.collection("topics", input=True)
-"""The topics of the conversation, by the name of the skill. While there is a topic, no goal is pursued. A skill adds a
-topic when it begins to talk about something, and removes the topic at the end."""
+"""Name of a skill → the topic that it talks about. While there is a topic, no goal is pursued. A skill adds a topic when
+it begins to talk about something, and removes the topic at the end."""

@@ -1,4 +1,4 @@
-"""The rules of agenda. They decide when the agent may pursue a goal."""
+"""The rules of agenda. They decide when the agent may pursue a goal, which means to say the goal's words."""
 
 from __future__ import annotations
 
@@ -24,7 +24,7 @@ async def take_initiative(ctx: rs.RuleContext) -> rs.Resign | None:
 
 @module.rule(when=rawio.input.changed.max_age(None).detached(), background=True)
 async def yield_to_the_user(ctx: rs.RuleContext) -> None:
-    """Withdraw the opportunity to pursue a goal when the user speaks."""
+    """When the user speaks, withdraw the opportunity to pursue a goal."""
     ctx.wipe(opportunity)
 
 

@@ -24,7 +24,7 @@ RELATIONS: Mapping[str, tuple[str, str]] = {
     "membership": ("member_of", "Organisation"),
     "makers": ("made_by", "Organisation"),
 }
-"""Fact → its relation in memory, and the type of the node at the other end. All other facts are only in the file."""
+"""Fact → its relation in memory, and the type of the node at the other end. Except the birthday, all other facts are only in the file."""
 
 
 async def settle(life: Life, memory: Memory) -> Node:

@@ -73,5 +73,5 @@ def whole_words(expression: str) -> re.Pattern[str]:
     Raises:
         re.error: `expression` is not a regular expression.
     """
-    re.compile(expression)  # by itself: the brackets of "mad)|(sad" would fit those of the next line
+    re.compile(expression)  # alone: with the brackets of the next line, "mad)|(sad" would be valid
     return re.compile(rf"(?<!\S)(?:{expression})(?!\S)")

@@ -24,7 +24,7 @@ class Settings(rs.Settings):
     """The agent's life file, and the delay before the agent offers to talk about itself."""
 
     life: Path | None = None
-    """The designer's life file. The facts and topics in it replace those of the built-in file; all others stay."""
+    """The designer's life file. Its facts and topics change those of the same name in the built-in file."""
     prompt_after: Annotated[float, Field(gt=0)] = 60.0
     """Seconds of silence after which the agent invites the user to ask about the agent. This happens only once, and only
     after six utterances of the user."""
@@ -50,7 +50,8 @@ remarked = module.signal("remarked", payload=Remark)
 nearly all other answers. The payload has the topic."""
 
 life: rs.Slot[Life | None] = module.slot("life", None, type=Life, input=True)
-"""The agent's life, read at startup from the built-in file and the designer's. Facts in the agent's memory override them."""
+"""The agent's life (its facts and topics), read at startup from the built-in file and the designer's file. Facts in the
+agent's memory override the facts from the files."""
 
 mood: rs.Slot[str] = module.slot("mood", "fine", type=str, input=True)
 """The agent's mood as an adjective, for the answer to *how are you*. Any module may write this slot."""
@@ -65,7 +66,8 @@ clock: rs.Slot[Callable[[], datetime]] = module.slot("clock", machine_clock, inp
 """The clock for the agent's age, the date and the time of day; by default, the machine's clock."""
 
 prompted: rs.Slot[float | None] = module.slot("prompted", None)
-"""The time of the agent's invitation to ask about the agent, in seconds since the context began."""
+"""The time when the agent invited the user to ask about the agent, in seconds since the context began. None if the agent
+has not done so."""
 
 turns: rs.Slot[tuple[int, float]] = module.slot("turns", (0, 0.0))
-"""The number of the user's utterances, and the time of the last one."""
+"""The number of the user's utterances, and the time of the last one, in seconds since the context began."""

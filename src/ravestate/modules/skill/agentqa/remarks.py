@@ -1,4 +1,7 @@
-"""Remarks that the agent must answer. Fixed expressions show distress; acts and feelings show other remarks."""
+"""Remarks that the agent must answer. Fixed expressions show distress.
+
+Acts (the kinds of an utterance, such as an insult) and feelings show other remarks.
+"""
 
 from __future__ import annotations
 

@@ -49,7 +49,7 @@ class Match:
 
     topic: str
     question: str
-    """The question in the plain form."""
+    """The question in the plain form: lower case, no punctuation, short forms written out."""
     score: float
     """The confidence, 0 to 1."""
     example: str
@@ -127,7 +127,7 @@ def _readings(sentence: str, *, question: bool) -> Iterator[str]:
     """
     whole = _in_full(_POLITE.sub("tell me", _OPENERS.sub("", plain(sentence))))
     turned = question and whole != plain(sentence)
-    if turned and plain(sentence).startswith("you "):  # "you like tea" would resemble "what do you like"
+    if turned and plain(sentence).startswith("you "):  # unchanged, "you like tea" would resemble "what do you like"
         yield whole
         return
     yield sentence

@@ -156,7 +156,7 @@ async def respond(ctx: rs.RuleContext) -> None:
         ctx[verbaliser.intent] = intent(remark.topic, phrases)
 
 
-@module.rule(when=idle.hushed, writes=verbaliser.intent, weight=20.0)  # this rule outranks everything except a remark
+@module.rule(when=idle.hushed, writes=verbaliser.intent, weight=20.0)  # only the answer to a remark outranks this rule
 async def keep_quiet(ctx: rs.RuleContext) -> None:
     """Promise to be quiet; `idle` keeps the promise."""
     ctx[verbaliser.intent] = Intent("hushed", package=__package__)

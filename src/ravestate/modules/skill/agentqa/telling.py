@@ -18,7 +18,8 @@ def telling(
 
     Args:
         topic: The topic.
-        question: The question in the plain form. If it names a value of a fact, the answer is about this value.
+        question: The question in lower case, without punctuation and short forms. If it names a value of a fact, the
+            answer is about this value.
         facts: The agent's facts.
         mood: The agent's mood.
         now: The current time, for the agent's age, the date and the time of day.
@@ -121,7 +122,7 @@ _FAVOURITE = re.compile(
 )
 """A question about the agent's favourite of one kind: *what is your favourite bird*, *which bird do you like best*."""
 _LIKED = re.compile(r"\b(?:like|love|enjoy|hate|fond of|into|mind) (.+)$")
-"""The thing in *do you like rain*."""
+"""A question such as *do you like rain*. The pattern's group is the thing: *rain*."""
 _FILLING = frozenset(
     ("it", "when", "the", "a", "an", "to", "it'", "really", "very", "much", "too", "also", "weather", "outside")
 )

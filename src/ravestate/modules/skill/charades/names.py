@@ -56,7 +56,7 @@ strayed: rs.Slot[float] = module.slot("strayed", 0.0, always=True)
 """The time at which the user last said something other than a move during a game (seconds since the context began)."""
 
 prompted: rs.Signal[int] = module.signal("prompted", payload=int, keep="latest")
-"""The agent waits for the user's next move. The payload is the value of `Game.turn`."""
+"""The agent waits for the user's next move. The payload is `Game.turn`, the number of moves and other transitions so far."""
 
 counted: rs.Signal[None] = module.signal("counted")
 """The countdown may begin."""

@@ -45,7 +45,7 @@ FEELINGS: dict[Feeling, rs.Signal[None]] = {
     "sad": emotion.sad,
 }
 PRIORITY = 40.0
-"""The weight of the answers in a game, which outrank all other answers, such as agentqa's answer to "stop"."""
+"""The weight of the answers in a game. These answers outrank all others, such as agentqa's answer to "stop"."""
 JUST = 0.1
 """Speech that ended at most this many seconds ago counts as the last word of the countdown."""
 SPEAKING = 6.0

@@ -146,14 +146,14 @@ def _own_words(seen: Analysis) -> str:
 
 @cache
 def examples() -> Matcher:
-    """Return the classifier of the user's words during the game, loaded or not."""
+    """Return the classifier of the user's words during the game. It may not be loaded yet; see `load`."""
     found = read_examples(files(__name__.rpartition(".")[0]) / "examples.yaml")
     return Matcher(found.classes, found.none)
 
 
 @cache
 def names() -> Matcher:
-    """Return the classifier of the names of activities, loaded or not."""
+    """Return the classifier of the names of activities. It may not be loaded yet; see `load`."""
     found = {riddle.name: [f.format(w) for w in riddle.words for f in FRAMES] for riddle in RIDDLES.values()}
     return Matcher(found, NO_NAMES, least=SURE_NAME)
 

@@ -1,4 +1,7 @@
-"""The names of `fillers`: its settings, its module, its slots and signals."""
+"""The names of `fillers`: its settings, its module, its slots and signals.
+
+A filler is a phrase such as "Let me think…", which the agent says when an answer is slow.
+"""
 
 from __future__ import annotations
 

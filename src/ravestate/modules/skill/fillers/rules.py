@@ -1,4 +1,4 @@
-"""The rules that fill a pause while the user waits for an answer."""
+"""The rules that fill a pause while the user waits for an answer, with a filler such as "Let me think…"."""
 
 from __future__ import annotations
 

@@ -1,4 +1,7 @@
-"""The steps from a question to an answer with a source and a confidence: retrieve, read, weigh."""
+"""The steps from a question to an answer with a source and a confidence: retrieve, read, weigh.
+
+The reader is a cross-encoder, which is a model that judges how well a passage answers a question.
+"""
 
 from __future__ import annotations
 
@@ -25,16 +28,16 @@ from .stems import Stems
 RETRIEVED = 20
 """The maximum number of passages in each of two searches: for any word of the question, and for all its words."""
 READ = (1, 1, 2, 4, 8, 8)
-"""The sizes of the batches in which passages are read until one is good enough. Only a follow-up uses the last two
-sizes."""
+"""The sizes of the batches in which passages are read until one is good enough. The last two sizes are only for a
+follow-up, which is a question that refers to earlier questions."""
 GOOD, VERY_GOOD, HOPELESS = 7.5, 9.0, -4.0
-"""Best scores that end the reading: `VERY_GOOD` after the first passage, and `GOOD` after later passages. A best score
-of `HOPELESS` or less ends the reading after four passages, except for a follow-up."""
+"""The reading ends when the best score so far is at least `VERY_GOOD` after the first passage, or at least `GOOD` later.
+If the best of four scores is `HOPELESS` or less, the reading also ends, except for a follow-up."""
 ENOUGH = 0.4
-"""The minimum share (0 to 1) of the question's words in a passage. Passages with fewer words are not read."""
+"""The minimum share (0 to 1) of the question's words in a passage. Passages with a smaller share are not read."""
 SHORT = 24
-"""The search adds at most this many passages of each document that the thread (the latest questions) is about. The words
-of these passages do not matter."""
+"""The search adds at most this many passages of each document that the thread (the latest questions) is about. These
+passages need not have words of the question."""
 LEVEL = 0.8
 """Two scores count as equal if they differ by less than this."""
 COMMON = 20_000
@@ -45,7 +48,7 @@ word of `Question.kinds`, `NAMES` if not."""
 WORDS = 24
 """The maximum number of words to search for."""
 NOT_STATED = "no document states all of it"
-"""The reason why there is no answer if no passage meets the qualifiers of a question."""
+"""The reason why there is no answer, if no passage meets the question's qualifiers, such as names, years and ranks."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -150,7 +153,8 @@ class Answerer:
 
         Args:
             heard: The utterance, its parse, or its question.
-            titles: The titles of documents that the thread is about; their first passages are considered as well.
+            titles: The titles of documents that the thread (the latest questions) is about. The first passages of these
+                documents are considered as well.
 
         Raises:
             PlatformError: See `load`.
@@ -175,7 +179,7 @@ class Answerer:
         )
 
     def states(self, needs: Sequence[Sequence[str]]) -> bool:
-        """Return whether a passage has a word of each of the `needs`. This takes less than a millisecond."""
+        """Return whether one passage has at least one word of each group in `needs`, in less than a millisecond."""
         return not needs or bool(self._opened().search_all(needs, 1))
 
     def titled(self, name: str) -> str:
@@ -267,7 +271,8 @@ class Answerer:
         if question.follows:
             return sorted(read, key=lambda candidate: -_chance(question, candidate))
         read.sort(key=lambda candidate: -candidate.score)
-        # Among equals, take the passage with the fewest words besides the question's: not "life expectancy of women".
+        # Among equals, take the passage with the fewest words that the question does not have. So the answer about life
+        # expectancy is not the passage about the life expectancy of women.
         level = [c for c in read if c.score > read[0].score - LEVEL and c.covered >= read[0].covered]
         asked = {form for word in question.words for form in variants_of(word.lower())}
         first = min(level, key=lambda one: (not _is_plain(question, one.text), _besides(one.text, asked)))

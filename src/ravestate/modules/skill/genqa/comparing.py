@@ -15,7 +15,7 @@ from .reckoning import apart, both, dates_in, focused, measured, of_both
 from .thread import Turn, is_noun, phrase_of, referents, refers
 
 _BOTH = ("difference", "together", "total", "altogether")
-"""Words that ask about two numbers of the thread together: *what is the difference?*."""
+"""Words that ask for a result from two earlier numbers: *what is the difference?*."""
 _TIMED = ("old", "early", "late")
 """Adjectives whose measure is a date."""
 
@@ -94,7 +94,7 @@ def _distance(one: float, other: float) -> float:
 
 
 def _sides(heard: Parse, thread: Sequence[Turn]) -> tuple[list[str], list[Turn]]:
-    """Return the two things to compare, and their turns if they come from the thread."""
+    """Return the two things to compare, and their turns (earlier questions with answers) if they come from the thread."""
     named = [(word, name) for word in heard.asked if word.low not in _BOTH and (name := _name(heard, word, thread))]
     between = next((word.index for word in heard.asked if word.low in ("or", "than")), None)
     if between is not None:
@@ -117,7 +117,7 @@ def _sides(heard: Parse, thread: Sequence[Turn]) -> tuple[list[str], list[Turn]]
 
 
 def _name(heard: Parse, word: Word, thread: Sequence[Turn]) -> str:
-    """Return the name of the thing that a noun or a pronoun stands for; empty for other words."""
+    """Return the name of the thing that a noun or a pronoun stands for. For any other word, return an empty text."""
     if refers(word, heard.asked):
         return next((thing.text for thing in referents(word, thread)), "")
     if not is_noun(word) or word.low in ("one", "ones"):

@@ -1,4 +1,7 @@
-"""The confidence of an answer: a logistic regression, fitted by ``tools/calibrate_genqa.py``."""
+"""The confidence of an answer: a logistic regression, fitted by ``tools/calibrate_genqa.py``.
+
+The reader is the model that scores how well a passage answers a question.
+"""
 
 from __future__ import annotations
 
@@ -20,10 +23,10 @@ def confidence(score: float, covered: float) -> float:
 
 
 def in_talk(score: float, own: float) -> float:
-    """Return the probability (0 to 1) that a passage answers a follow-up.
+    """Return the probability (0 to 1) that a passage answers a follow-up, a question that refers to earlier questions.
 
     A high score alone is enough, because a follow-up rarely has the document's own words. The factors are twice the
-    fitted factors, which lowers the confidence in doubtful answers: a wrong answer is worse than no answer.
+    fitted factors. This lowers the confidence in doubtful answers, because a wrong answer is worse than no answer.
 
     Args:
         score: The reader's score of the passage.

@@ -17,7 +17,7 @@ class Passage:
 
 @dataclass(frozen=True, slots=True)
 class Document:
-    """A part of a file about one subject."""
+    """A part of a file. The part has one subject."""
 
     title: str
     """The subject, which gives each passage its context."""

@@ -1,4 +1,7 @@
-"""The answer to an utterance in a conversation. If an utterance has several readings, the best answer counts."""
+"""The answer to an utterance in a conversation.
+
+An utterance may have several readings (complete questions for which it may stand). Then the best answer counts.
+"""
 
 from __future__ import annotations
 
@@ -30,7 +33,9 @@ MOST = 8
 def answer_in(
     answerer: Answerer, heard: Parse, thread: Sequence[Turn], settings: Settings, now: float
 ) -> tuple[Answer, Turn | None]:
-    """Return the best supported answer to an utterance, and the turn to add to the thread if the agent may say the answer.
+    """Return the best supported answer to an utterance, and the turn (a question with its answer) to add to the thread.
+
+    The turn is None if the agent may not say the answer.
 
     Args:
         answerer: The documents.
@@ -74,7 +79,7 @@ def answer_in(
         answer = replace(answer, confidence=_shifted(answer.confidence, reading.prior))
         if best is None or answer.confidence > best[0].confidence:
             best = answer, seen
-        if best[0].confidence >= settings.sure:  # an older question may fit as well: *and in Mali?*
+        if best[0].confidence >= settings.sure:  # stop here, because an older question may fit as well: *and in Mali?*
             break
     if best is None:
         return Answer(heard.text, reason=reason), None
@@ -150,7 +155,7 @@ def _decided(answerer: Answerer, question: Question, settings: Settings, titles:
 
 
 def other_wording(question: str) -> str:
-    """Return a question that documents answer better, and that decides the given question; empty if there is none.
+    """Return a question that documents answer better, and whose answer also answers `question`; empty if there is none.
 
     Example:
         >>> other_wording("How far is the moon?")

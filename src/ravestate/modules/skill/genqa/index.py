@@ -36,7 +36,7 @@ CREATE VIRTUAL TABLE words USING fts5vocab(passages, 'row');
 PRAGMA application_id = {APPLICATION};
 PRAGMA user_version = {FORMAT};
 """
-# The ranking, with the weights of matches in the title, the text and the hints.
+# The ranking, with the weights of matches in the title, the text and the hints (further words for the search).
 _RANK = "bm25(passages, 1.0, 1.0, 0.7)"
 
 
@@ -65,7 +65,7 @@ class Found:
 
 
 class Index:
-    """Passages on disk. Any number of threads and processes may read while one thread writes.
+    """Passages on disk. Any number of threads and processes may read while one thread of one process writes.
 
     Each file is added, replaced or removed as a whole, in one transaction. If Ctrl-C, ``kill -9`` or a full disk
     interrupts the transaction, the index stays as it was before.
@@ -124,7 +124,7 @@ class Index:
     # ------------------------------------------------------------------------------- what is in it
 
     def files(self) -> Iterator[IndexedFile]:
-        """Yield all files that have been read, by path."""
+        """Yield all files that have been read, in the order of their paths."""
         return (IndexedFile(*row) for row in self._rows("SELECT * FROM files ORDER BY path"))
 
     def file(self, path: str) -> IndexedFile | None:
@@ -137,7 +137,7 @@ class Index:
         return self._rows("SELECT coalesce(sum(passages), 0) FROM files")[0][0]
 
     def source(self, row: int) -> str:
-        """Return the source of a passage."""
+        """Return the source of the passage in a row of the index."""
         found = self._rows("SELECT source FROM documents WHERE first <= ? ORDER BY first DESC LIMIT 1", row)
         return found[0][0] if found else ""
 
@@ -156,7 +156,7 @@ class Index:
     # ---------------------------------------------------------------------------------- searching
 
     def passages(self, title: str, limit: int) -> list[Found]:
-        """Return the first passages of the documents with this title."""
+        """Return the first `limit` passages of the documents with this title."""
         query = """
             SELECT p.rowid, p.title, text, hints FROM documents d JOIN passages p ON p.rowid BETWEEN d.first AND d.last
             WHERE d.title = ? COLLATE NOCASE LIMIT ?"""
@@ -291,7 +291,7 @@ _ERRORS = {
     "BUSY": _BUSY, "LOCKED": _BUSY, "NOTADB": _DAMAGED, "CORRUPT": _DAMAGED,
     "READONLY": f"it cannot be written: {_OTHER}", "CANTOPEN": f"it cannot be opened: {_OTHER}",
 }  # fmt: skip
-"""The advice for each error of SQLite."""
+"""Beginning of an SQLite error's name, without ``SQLITE_`` → the problem and the advice."""
 
 
 def _any_of(words: Sequence[str]) -> str:

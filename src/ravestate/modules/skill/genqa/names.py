@@ -31,10 +31,10 @@ class Settings(rs.Settings):
     silent."""
     wording: Literal["sentence", "model"] = "sentence"
     """``sentence``: the document's own words; ``model``: the words of wildtalk's language model. The prompt has only the
-    sentences that were found, and an answer with any other name or number is not used."""
+    question and the passages that were found. A result with any other name or number is not used."""
     reader: Path | None = None
-    """The folder of another cross-encoder (``model.onnx``, ``tokenizer.json``); the confidence is calibrated for the
-    bundled cross-encoder."""
+    """The folder of another cross-encoder (``model.onnx``, ``tokenizer.json``), the model that judges passages. The
+    confidence is calibrated for the bundled cross-encoder."""
 
     rates: Mapping[str, float] = Field(default_factory=dict[str, float])
     """Currency (``dollar``, ``euro``, ``sterling``...) → its value; all values are in the same currency. Only currencies with a

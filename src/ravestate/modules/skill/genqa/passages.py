@@ -20,7 +20,7 @@ _ABBREVIATION = re.compile(
     r"(?:\b(?:Mr|Mrs|Ms|Dr|Prof|St|vs|No|Fig|Vol|pp?|ca|approx|e\.g|i\.e|cf|etc|al|Jan|Feb|Mar|Apr|Jun|Jul|Aug|Sep|"
     r"Sept|Oct|Nov|Dec|Inc|Ltd|Co|U\.S|U\.K)|\b[A-Z]|\s\d{1,2})\.\s*\Z"
 )
-# First words of a sentence that needs the previous one.
+# First words of a sentence that refers to an earlier sentence.
 _LEANS = re.compile(r"(?:It|Its|He|She|His|Her|They|Their|This|These|That|Those|There|Here|Such)\b")
 _HYPHEN = re.compile(r"(?<=[a-z])-\n(?=[a-z])")
 

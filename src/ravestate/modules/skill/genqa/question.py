@@ -1,4 +1,7 @@
-"""The question in an utterance: its words, its qualifiers, and whether documents can answer it."""
+"""The question in an utterance: its words, its qualifiers, and whether documents can answer it.
+
+Qualifiers are conditions for a passage: words that the passage must have, and words that it must not have.
+"""
 
 from __future__ import annotations
 
@@ -87,7 +90,7 @@ class Parse:
 
 
 def parse(text: str) -> Parse:
-    """Parse a text with the pipeline of nlp. Recent parses are kept, because several readings contain the same text."""
+    """Parse a text with the pipeline of nlp. Recent parses are kept, because the same text often comes again."""
     return _parse(text, kinds().loaded)
 
 
@@ -98,7 +101,7 @@ def _parse(text: str, _loaded: bool) -> Parse:
 
 
 def parsed(tree: Tree, entities: Sequence[Entity], kind: QuestionWord | None) -> Parse:
-    """Return the parse. Its question is the first sentence with a question word or mark, or else the last sentence."""
+    """Return the parse. Its question is the first sentence that asks something, or else the last sentence."""
     asked = (asking(tree) or sentences_in(tree)[-1:] or [[]])[0]
     root = next((word for word in asked if word.head == word.index), None)
     if root is not None:
@@ -149,7 +152,7 @@ def as_question(heard: str | Parse) -> Question:
     said = [word for word in heard.asked if word.pos != "PUNCT"]
     content = list(dict.fromkeys(part for word in said if _means(word) for part in _parts(word)))
     kinds = tuple(part for word in said for part in _parts(word) if part.lower() in words_of("kinds"))
-    words = tuple(word for word in content if word not in kinds) or tuple(content)  # "What is time?"
+    words = tuple(word for word in content if word not in kinds) or tuple(content)  # kinds alone: "What is time?"
     reason, doubtful = _declined(heard, said), heard.kind is None
     if not reason and content and all(word.lower() in words_of("moment") for word in content):
         reason = "it is about the moment, which documents do not know"

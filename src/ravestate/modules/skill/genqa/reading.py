@@ -103,7 +103,7 @@ def _markdown(path: Path, source: str) -> Iterator[Document]:
     library = _library("markdown_it", "markdown-it-py", "Markdown")
     text = _FRONT_MATTER.sub("", _decoded(path).replace("\r\n", "\n"), count=1)
     parser = library.MarkdownIt("commonmark").enable("table").disable("code")  # indented text is mostly prose
-    page = re.sub(r"<pre>.*?</pre>", "", parser.render(text), flags=re.DOTALL)  # code
+    page = re.sub(r"<pre>.*?</pre>", "", parser.render(text), flags=re.DOTALL)  # drop code
     return documents_in(page, _title(path), source, top="")
 
 

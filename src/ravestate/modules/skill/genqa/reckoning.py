@@ -43,7 +43,7 @@ _SCALED = (
         rf"\D*\b(?P<amount>\d[\d.,]*) ?(?P<word>[a-z]+)\b\D*\bfor (?P<few>\d+){_HEADS}(?:\W| and| but| what| how)\D*\bfor (?P<many>\d+){_HEADS}"
     ),
 )
-"""An amount for a number of people, and the number of people for whom to compute it: *300 g rice for 4, and for 6?*."""
+"""Questions that give an amount for some people, and ask for the amount for others: *300 g rice for 4, and for 6?*."""
 _DEFAULTS = (datetime(2000, 1, 1), datetime(2004, 3, 3))  # noqa: DTZ001
 
 
@@ -155,7 +155,7 @@ def measured(text: str, after: Sequence[str] = ()) -> list[Quantity]:
 
     Args:
         text: The text.
-        after: Texts from before `text`; their numbers come after those of `text`.
+        after: Earlier texts. The numbers of the last of these texts come after the numbers of `text`.
     """
     found: list[Quantity] = []
     spoken = re.sub(r"\bdegrees? (?=[cf])", "", _in_digits(text))
@@ -342,7 +342,7 @@ def _registry() -> Any:
 
 
 def _in_pint(unit: str, rates: Mapping[str, float]) -> Any:
-    """Return the quantity 1 of a unit."""
+    """Return one of a unit, such as one metre, as a quantity of pint."""
     if unit.startswith(_MONEY):
         return rates.get(unit.removeprefix(_MONEY), 1.0) * _registry().money
     return _registry().Quantity(1, unit) if unit else 1

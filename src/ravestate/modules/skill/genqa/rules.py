@@ -21,7 +21,7 @@ from .wording import intent_of, wording_rule
 
 @module.rule(when=rs.startup, background=True)
 def load(ctx: rs.RuleContext) -> None:
-    """Open the index and load the reader in the background, so that the first question does not have to wait."""
+    """Open the index and load the reader (the model that judges passages), so that the first question need not wait."""
     wait_for_prompt()
     with contextlib.suppress(PlatformError):  # the first question raises the error again
         try:
@@ -63,7 +63,7 @@ def find(ctx: rs.RuleContext) -> rs.Resign | None:
         said, view = (
             ctx[rawio.output],
             () if reasons else turns,
-        )  # "who are you? and in Peru?" follows no earlier question
+        )  # in "who are you? and in Peru?", the second part does not follow an older question
         if new:
             view = tuple(new)  # "who wrote Faust, and when was he born?"
         elif said and not (view and view[-1].answer in said) and any(refers(word, heard.asked) for word in heard.asked):

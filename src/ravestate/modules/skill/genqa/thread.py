@@ -22,7 +22,7 @@ NUMBERS = ("DATE", "TIME", "CARDINAL", "QUANTITY", "MONEY", "PERCENT", "ORDINAL"
 LONGEST = 200
 """The maximum number of characters of a question that may refer to another question."""
 KEPT = 6
-"""The number of questions in the thread."""
+"""The maximum number of questions in the thread."""
 REMEMBERED = 120.0
 """Seconds for which later questions may refer to a question."""
 LESS = -0.15
@@ -122,7 +122,7 @@ def turn_of(asked: Parse, found: Answer, at: float) -> Turn:
 
 
 def overheard(said: str, at: float) -> Turn:
-    """Return a turn for words that the agent said by itself, so that later questions may refer to the names in them."""
+    """Return a turn for words of the agent that are no answer, so that later questions may refer to their names."""
     return Turn("", said, "", at, told=tuple(thing for thing in things_of(parse(said)) if thing.is_name))
 
 
@@ -306,7 +306,7 @@ class _Follow:
         return Reading(f"{self.text}?" if self.seen.kind is not None else self.text, prior)
 
     def about(self) -> Iterator[Reading]:
-        """Yield the utterance as a question about each name in the thread: *who was on board?*."""
+        """Yield the utterance as a question about each name in the last turn: *who was on board?*."""
         for rank, thing in enumerate(self.names if self.words else ()):
             noun = not any(word.tag in (*FINITE, *WH) for word in self.words)
             of = f" of {thing.text}" if noun else ""

@@ -19,7 +19,7 @@ from .shipped import OWN
 TOLD = 3
 """The maximum number of passages in the prompt."""
 WORTH_TELLING = 3.0
-"""A passage is in the prompt only if its score is at most this far below the best score."""
+"""A further passage is in the prompt only if its score is at most this far below the answer's score."""
 FAMILIAR = 0.6
 """The minimum share of the model's words that must also be in the passages or in the question."""
 

@@ -16,10 +16,11 @@ from ravestate.modules.meta.verbaliser.intents import Intent
 from .names import goodbye, greeted, hello, module, parted
 
 JUST_NOW = 60.0
-"""The number of seconds for which a greeting or a goodbye of the agent counts. Meanwhile, the agent says no second
-hello to a user who greets, and no second goodbye to a user who leaves."""
+"""For this many seconds after its greeting, the agent says no second hello to a user who greets. For the same time after
+its goodbye, it says no second goodbye to a user who leaves."""
 GENERAL = 0.15
-"""The weight of the answers. It is so low that almost any other rule that can answer outranks them."""
+"""The weight of the rules that answer the user's hello or goodbye. Almost every other rule that can answer outranks
+these rules."""
 
 
 @module.rule(
@@ -48,7 +49,10 @@ async def bid_farewell(ctx: rs.RuleContext) -> rs.Resign | None:
 
 @module.rule(when=rawio.input.changed, emits=(hello, goodbye))
 async def listen(ctx: rs.RuleContext) -> None:
-    """Notice a greeting or a goodbye. The sentence model may take a few milliseconds, so it runs in a thread."""
+    """Notice a greeting or a goodbye.
+
+    The sentence model, which compares meanings, may take a few milliseconds, so it runs in a thread.
+    """
     act = await asyncio.to_thread(_only_act, ctx.payload(rawio.input.changed))
     if act:
         ctx.emit(hello if act == "greeting" else goodbye)
@@ -84,6 +88,6 @@ def _partings() -> Matcher:
 
 
 def _goes_to_bed(text: str) -> bool:
-    if bundled_matcher("acts").loaded:  # if not, only words that equal an example are recognised
+    if bundled_matcher("acts").loaded:  # if the sentence model is not loaded, only words that equal an example count
         _partings().load()
     return any(_partings().match_all(heard(text)))

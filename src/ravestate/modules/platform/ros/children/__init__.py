@@ -1,1 +1,1 @@
-"""The programs of the bridge processes. Each runs alone on Python 3.8 or newer, and imports nothing from Ravestate."""
+"""The programs of the bridge processes. Each program runs alone on Python 3.8 or newer, and imports nothing from Ravestate."""

@@ -1,7 +1,7 @@
 """A bridge process that joins the network of ROS 2 by DDS (cyclonedds), without an installed ROS 2.
 
-It carries only topics, no services. A service would need the metadata of a sample (a message of
-DDS), which the library does not offer.
+It carries only topics, no services and no actions. A service would need the metadata of each sample (a
+message of DDS). The library does not offer these metadata.
 """
 
 # pyright: basic, reportMissingImports=false
@@ -96,14 +96,14 @@ class DdsNode:
         self._channels.pop(channel, None)
 
     def ask(self):
-        """Return the topics of the network, with the numbers of other participants' publishers and subscribers."""
+        """Return the topics of the network. Count their publishers and subscribers in other participants."""
         import time
 
         from cyclonedds.builtin import BuiltinDataReader, BuiltinTopicDcpsPublication, BuiltinTopicDcpsSubscription
 
         own = self._participant.guid
         found = {}
-        time.sleep(1.0)  # other participants announce themselves
+        time.sleep(1.0)  # in this time, other participants announce themselves
         for place, kind in (("publishers", BuiltinTopicDcpsPublication), ("subscribers", BuiltinTopicDcpsSubscription)):
             for sample in BuiltinDataReader(self._participant, kind).read(N=10000):
                 if sample.topic_name.startswith("rt/") and sample.participant_key != own:
@@ -169,7 +169,7 @@ def raw_type(name, fields):
 
 
 def quality(qos):
-    """Return the QoS with these values."""
+    """Return a quality of service as an object of cyclonedds. `qos` holds its values by name."""
     from cyclonedds.core import Policy, Qos
 
     reliable = qos["reliability"] == "reliable"

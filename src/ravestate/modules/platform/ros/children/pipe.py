@@ -1,7 +1,10 @@
-"""The child's end of the pipe between an agent and its bridge process. The programs in this folder use this module.
+"""The child's end of the pipe between an agent and its bridge (the process that runs a ROS library for the agent).
 
-A frame is a head (kind, flags, channel, number, size) and a body of `size` bytes. A body of at least `LARGE` bytes
-travels in shared memory: the sender copies it there once, and the pipe carries the file descriptor.
+The bridge programs in this folder use this module.
+
+A frame is a head (kind, flags, channel, number, size) and a body of `size` bytes. The channel is the number of one topic,
+service or action of the agent. The frame's number is the number of a call, or of a connection. A body of at least `LARGE`
+bytes travels in shared memory: the sender copies it there once, and the pipe carries the file descriptor.
 """
 
 # pyright: basic
@@ -22,7 +25,7 @@ HEAD = struct.Struct("<BBxxIII")
 SHARED = 1  # a flag: the body is in shared memory
 PASSED = 2  # a flag: a socket comes with the frame
 LARGE = 1 << 16
-SEEKING = 0.7  # the server must appear within this part of a call's time-out, so that a fault reaches the agent in time
+SEEKING = 0.7  # the server must appear in this part of a call's time-out, so that a fault reaches the agent in time
 
 OPEN, BIND, UNBIND, MESSAGE, ACK, CALL, ANSWER, FAULT, FEEDBACK, CANCEL, ASK, TOLD, NOTE, READY, CLOSE = range(1, 16)
 SUBSCRIBER, PUBLISHER, HANGUP = 16, 17, 18
@@ -32,13 +35,14 @@ The agent sends OPEN, BIND, UNBIND, ACK, CANCEL, ASK, CLOSE and HANGUP. The brid
 SUBSCRIBER and PUBLISHER. Both send MESSAGE, CALL, ANSWER and FAULT. SUBSCRIBER and PUBLISHER come with a socket, which
 is the connection with another node.
 
-BIND opens a channel, and UNBIND closes it. ACK allows the next message of a channel. ASK is a question about the network,
-and TOLD is its answer. NOTE is a text for the log. HANGUP says that a connection has ended.
+OPEN carries the bridge's configuration. The bridge answers with READY, or with FAULT if it cannot start. CLOSE ends the
+bridge. BIND opens a channel, and UNBIND closes it. ACK allows the next message of a channel. ASK is a question about the
+network, and TOLD is its answer. NOTE is a text for the log. HANGUP says that a connection has ended.
 """
 
 
 class Pipe:
-    """A connected socket that carries frames. `send` is thread-safe; one thread receives."""
+    """A connected socket that carries frames. `send` is thread-safe; only one thread may receive."""
 
     def __init__(self, sock):
         self._sock = sock
@@ -136,7 +140,7 @@ class Outlet:
         self._pipe.send(MESSAGE, self._channel, 0, body)
 
     def acknowledge(self):
-        """Record that the agent has handled the last message."""
+        """Record that the agent has handled the last message. Send the waiting message, if there is one."""
         with self._lock:
             body, self._pending = self._pending, None
             self._busy = body is not None
@@ -152,7 +156,7 @@ def serve(open_node):
             ``unbind``, ``message``, ``call``, ``answer``, ``cancel``, ``ask`` and ``close``, and for ROS 1 also
             ``hang_up``.
     """
-    signal.signal(signal.SIGINT, signal.SIG_IGN)  # Ctrl-C is for the agent, which ends this process cleanly
+    signal.signal(signal.SIGINT, signal.SIG_IGN)  # the agent reacts to Ctrl-C, and ends this process cleanly
     pipe = Pipe(socket.socket(fileno=int(sys.argv[1])))
     try:
         kind, _, _, body = pipe.receive()
@@ -214,7 +218,7 @@ def _obey(pipe, node):
 
 
 def reason(error):
-    """Return a sentence about an exception."""
+    """Return the type and the message of an exception as text."""
     return f"{type(error).__name__}: {error}" if str(error) else type(error).__name__
 
 

@@ -11,7 +11,7 @@ import xmlrpc.client
 
 from pipe import ANSWER, CALL, FAULT, LARGE, PUBLISHER, SEEKING, SUBSCRIBER, Pipe, every, reason, serve
 
-PROBE = 1.0  # seconds between two looks at the master
+PROBE = 1.0  # seconds between two checks of the ROS master
 
 
 def message_class(type_, md5, text=""):
@@ -73,7 +73,7 @@ def transport_class(node):
         def receive_loop(self, msgs_callback):
             node.check(self.name, self.header)
             try:
-                while self.read_buff.tell() < 4:  # the length of the first message
+                while self.read_buff.tell() < 4:  # the first 4 bytes are the length of the first message
                     recv_buff(self.socket, self.read_buff, self.protocol.buff_size)
                 first = self.read_buff.getvalue()[: self.read_buff.tell()]
             except (TransportTerminated, AttributeError):
@@ -133,7 +133,7 @@ class Ros1Node:
             return 0
 
     def _look_at_master(self):
-        """End the process if a new master has replaced the old one. The next process registers with the new master."""
+        """End the process if a new master has replaced the old one. The agent then starts a process for the new master."""
         pid = self._master_pid()
         if pid == self._pid:
             return
@@ -172,7 +172,7 @@ class Ros1Node:
                 outlet.put(message._buff)
 
         # rospy's queue has no limit, because all subscribers of a topic share it. The outlet skips old messages instead.
-        # rospy allocates a new buffer for each read. Reading an image in parts costs less than a large buffer.
+        # rospy allocates a new buffer for each read. Reading an image in parts costs less than allocating a large buffer.
         subscriber = rospy.Subscriber(
             binding["name"], rospy.AnyMsg, take, queue_size=None, buff_size=1 << 16, tcp_nodelay=True
         )
@@ -181,7 +181,7 @@ class Ros1Node:
         return subscriber
 
     def check(self, topic, header):
-        """Warn the agent about each subscription to a topic that has another type than the publisher."""
+        """Warn the agent about each of its subscriptions to `topic` whose type is not the publisher's type."""
         for channel, binding in list(self._bindings.items()):
             if header and binding["kind"] == "subscriber" and binding["name"] == topic and not _suits(binding, header):
                 self._pipe.note(channel, _mismatch(binding, header))
@@ -191,7 +191,7 @@ class Ros1Node:
         return connection
 
     def from_publisher(self, connection, first):
-        """Give the agent a connection with a publisher, and the bytes that were already read."""
+        """Give the agent a connection with a publisher, and the bytes that this process has already read from it."""
         header = connection.header
         what = {
             "topic": connection.name, "type": header["type"], "md5": header["md5sum"],
@@ -332,7 +332,7 @@ def _mismatch(binding, header):
 
 
 def service_header(name, uri):
-    """Return the header fields of a service, such as its type and MD5 sum; empty if the service does not answer."""
+    """Return the header fields of a service, such as its type and MD5 sum, or ``{}`` if the service does not answer."""
     import rosgraph
     from rosgraph.network import read_ros_handshake_header, write_ros_handshake_header
 
@@ -345,7 +345,7 @@ def service_header(name, uri):
             fields = {"probe": "1", "md5sum": "*", "callerid": "/ravestate", "service": name}
             write_ros_handshake_header(sock, fields)
             return dict(read_ros_handshake_header(sock, BytesIO(), 2048))
-    except Exception:  # rosgraph raises many kinds of errors for a service that is gone or broken: its type is unknown
+    except Exception:  # rosgraph raises many kinds of errors if a service is gone or broken; the type stays unknown
         return {}
 
 

@@ -63,7 +63,7 @@ class Ros2Node:
                 self._pipe.note(0, reason(error), "error")
 
     def bind(self, channel, binding, outlet):
-        """Make a subscriber, publisher, client, server or action client."""
+        """Make the channel's subscriber, publisher, service client, service server or action client."""
         kind, name = binding["kind"], binding["name"]
         self._bindings[channel] = binding
         cls = interface(binding["type"])
@@ -107,7 +107,7 @@ class Ros2Node:
                 continue
             for info in others:
                 if info.node_name == UNKNOWN:
-                    continue  # a node's name comes a moment after its topic
+                    continue  # ROS 2 reports a node's topic a moment before the node's name
                 other = channel, info.node_namespace.rstrip("/") + "/" + info.node_name, info.topic_type
                 if info.topic_type != type_ and other not in self._named:
                     self._named.add(other)
@@ -136,7 +136,7 @@ class Ros2Node:
         body, failed = await future
         if failed:
             self._pipe.note(channel, bytes(body).decode("utf-8", "replace"))
-            return cls.Response()  # ROS 2 has no failed answers
+            return cls.Response()  # a service of ROS 2 cannot answer that it has failed
         return deserialize_message(bytes(body), cls.Response)
 
     def message(self, channel, body):
@@ -144,11 +144,11 @@ class Ros2Node:
         self._channels[channel].publish(bytes(body))
 
     def call(self, channel, number, body):
-        """Call a service, or send a goal to an action server, in a thread. The server may not be there yet."""
+        """Call a service, or send a goal to an action server, in a thread, because the server may not be there yet."""
         act = self._call
         if self._bindings[channel]["kind"] == "action":
             act = self._act
-            self._goals[channel, number] = {"handle": None, "cancelled": False}  # now, so that `cancel` finds the goal
+            self._goals[channel, number] = {"handle": None, "cancelled": False}  # first, so that `cancel` finds it
         else:
             self._calls[channel, number] = {"future": None, "cancelled": False}
         threading.Thread(target=self._careful, args=(act, channel, number, bytes(body)), daemon=True).start()
@@ -275,7 +275,7 @@ class Ros2Node:
         self._executor.wake()
 
     def ask(self):
-        """Return the topics, services and actions of the network, without those of this node."""
+        """Return the topics, services and actions of the network. Count their users in other nodes only."""
         node = self._node
         topics = []
         own = node.get_name(), node.get_namespace()
@@ -336,7 +336,7 @@ def interface(name):
 
 
 def quality(qos):
-    """Return the QoS profile with these values."""
+    """Return a quality of service as an rclpy profile. `qos` holds its values by name."""
     from rclpy.qos import DurabilityPolicy, HistoryPolicy, QoSProfile, ReliabilityPolicy
 
     return QoSProfile(
