@@ -48,7 +48,7 @@ def _ask(name: str, quick: bool) -> list[Figure]:
         with Bench(name, quick) as bench:
             bench.progress(QUESTIONS[name])
             return list(question.ask(bench))
-    except Exception as error:  # one question that fails must not cost the others
+    except Exception as error:  # if one question fails, the others still get their figures
         print(f"\n{name} failed:\n{error}", file=sys.stderr)
         last = str(error).strip().splitlines()
         return [Figure(name, QUESTIONS[name], failed=(last[-1] if last else repr(error))[:60])]

@@ -1,4 +1,5 @@
-"""Tools that all questions share: contestants, the number of repetitions, and progress messages."""
+"""Tools that all questions share: contestants (Ravestate and its peers), the number of repetitions, and progress
+messages."""
 
 from __future__ import annotations
 
@@ -14,7 +15,7 @@ __all__ = ["Bench"]
 
 
 class Bench(contextlib.ExitStack):
-    """The contestants of one question. Leaving the ``with`` block ends their processes.
+    """The contestants of one question. Leaving the ``with`` block ends the contestants' processes.
 
     Args:
         quick: Whether to repeat less often.
@@ -26,7 +27,8 @@ class Bench(contextlib.ExitStack):
         self.quick = quick
 
     def rounds(self, many: int, few: int = 3) -> Iterator[int]:
-        """Yield the numbers of the repetitions. In each one, run all contestants, so that noise hits them alike."""
+        """Yield the index of each repetition. In each repetition, run all contestants, so that noise affects them
+        alike."""
         total = few if self.quick else many
         for number in range(total):
             self.progress(f"round {number + 1} of {total}")
@@ -45,7 +47,7 @@ class Bench(contextlib.ExitStack):
         return self._started(Child.peer(environments.clips(self.progress), "clips_rules.py"))
 
     def peer(self, script: str) -> Child:
-        """Return a process of another peer; `script` is its file in ``peers``."""
+        """Return a process of another peer; `script` is the peer's file in ``peers``."""
         return self._started(Child.peer(environments.peers(self.progress), script))
 
     def reference(self) -> Child:
@@ -53,7 +55,7 @@ class Bench(contextlib.ExitStack):
         return self._started(Child.peer(environments.reference(self.progress), "reference.py"))
 
     def callbacks(self) -> Child:
-        """Return a process of the floor."""
+        """Return a process of the floor (bare asyncio, without rules)."""
         return self._started(Child.peer(sys.executable, "callbacks.py"))
 
     def reference_interpreter(self) -> Path:

@@ -48,7 +48,7 @@ class Child:
     @classmethod
     def peer(cls, interpreter: Path | str, script: str) -> Child:
         """Start a script of a peer with the peer's interpreter."""
-        return cls(str(interpreter), "-E", str(PEERS / script))  # -E: PYTHONPATH may lead to this checkout
+        return cls(str(interpreter), "-E", str(PEERS / script))  # -E ignores PYTHONPATH, which may name this checkout
 
     def ask(self, call: str, timeout: float = 600.0, /, **arguments: Any) -> Any:
         """Call a function of the contestant with these arguments, and return its result.

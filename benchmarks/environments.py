@@ -1,6 +1,7 @@
 """The environments of the peers, in a folder that git ignores.
 
-They are separate because the reference implementation has the same import name as this project.
+The peers cannot use this project's environment, because the reference implementation has the same import name as this
+project.
 """
 
 from __future__ import annotations
@@ -15,7 +16,8 @@ __all__ = ["clips", "peers", "reference"]
 
 ROOT = Path(__file__).resolve().parent.parent / ".bench"
 
-# The reference is installed without dependencies: PyPI no longer has them, or the benchmark does not need them.
+# The reference is installed without dependencies: PyPI no longer has some of them, and the benchmark does not need the
+# others.
 REFERENCE = ["--no-deps", "ravestate==0.7.0.post1", "reggol==0.2.0", "pyyaml==6.0.3", "pyyaml-include==1.3.2"]
 CLIPS = ["clipspy==1.0.6"]
 # experta requires a version of frozendict that does not run on present versions of Python.
@@ -34,7 +36,7 @@ def clips(progress: Callable[[str], None]) -> Path:
 
 
 def peers(progress: Callable[[str], None]) -> Path:
-    """Return the interpreter that has further rule engines, and behaviour trees."""
+    """Return the interpreter that has durable_rules, experta and py_trees."""
     return _interpreter("peers", PEERS, progress)
 
 

@@ -37,11 +37,11 @@ class Figure:
         unit: "s", "B", "core" (share of one core) or "" (a count).
         ours: Our figure, in that unit.
         against: The peer, the floor, or another case of ours, for comparison.
-        theirs: The compared figure, in the same unit.
+        theirs: The figure of `against`, in the same unit.
         ratio: Ours divided by theirs, taken in each repetition.
         target: The target in words; empty without a claim.
         reached: Whether the target is reached; None without a claim.
-        failed: The reason for a missing figure.
+        failed: The reason why there is no figure; empty if there is one.
     """
 
     question: str

@@ -14,14 +14,17 @@ from ravestate.draw.style import NODE_COLOURS, PAPER, TEXT
 __all__ = ["plot"]
 
 FEWEST = 3
-"""A measured quantity with at least this many peers gets a panel; the others are only in the table."""
+"""A measured quantity with at least this many peers gets a panel. The picture leaves out quantities with fewer
+peers."""
 
 WIDE, LEFT, RIGHT, ROW, HEAD = 760.0, 190.0, 80.0, 20.0, 34.0
-"""Pixels: width, room for the names, room for the values, height of a bar's row, height of a panel's title."""
+"""In pixels: the picture's width, the room for names (left) and for values (right). Then the heights of a bar's row and
+of a panel's title."""
 
 
 def plot(figures: Iterable[Figure]) -> str:
-    """Return a picture with a panel for each quantity that has several peers; the shortest time comes first."""
+    """Return a picture with a panel for each quantity that has enough peers. In a panel, the shortest time comes
+    first."""
     panels: dict[str, dict[str, Spread]] = {}
     for figure in figures:
         if figure.unit == "s" and figure.ours is not None and figure.theirs is not None:

@@ -1,7 +1,8 @@
 """An apprentice that learns new rules at run time.
 
-"When I say ping, answer pong." adds a rule to this context. "Forget ping." makes that rule retire. Other contexts of
-the policy do not change. A learnt rule competes like any other rule: it is more specific than `puzzled`, so it wins.
+"When I say ping, answer pong." adds a rule to this context. "Forget ping." makes that rule retire (leave this context).
+Other contexts of the policy do not change. A learnt rule competes like any other rule: it is more specific than
+`puzzled`, so it wins.
 
     python examples/apprentice.py          teach it on the console
 """

@@ -1,9 +1,9 @@
 """A museum guide that understands words, and words together with a gesture.
 
 "What is this?" alone gets a general answer. The same words and a pointing hand get an answer about the picture. The
-camera may report the hand a moment after the words. The rule for both is more specific, so the rule for words alone
-waits. It waits at most until the patience of the other rule is over. Neither rule mentions the other, and neither
-counts seconds.
+camera may report the hand a moment after the words. The rule for words and gesture is more specific, so the rule for
+words alone waits. It waits at most until the patience of the other rule is over. Neither rule mentions the other, and
+neither counts seconds.
 
     python examples/museum_guide.py        plays a scene in virtual time
 """

@@ -142,7 +142,7 @@ class Entry:
 
 
 def number(text: str) -> float | None:
-    """Return the first number in `text`; *million*, *billion* and *trillion* count."""
+    """Return the first number in `text`. A following *million*, *billion* or *trillion* multiplies the number."""
     found = re.search(r"-?\d[\d,]*(?:\.\d+)?", text)
     if found is None:
         return None
@@ -179,7 +179,7 @@ def short(text: str, limit: int = 220) -> str:
 
 
 def lines_of(text: str) -> Iterator[str]:
-    """Return the sentences of prose."""
+    """Yield the complete sentences of prose that have 40 to 400 characters."""
     for part in text.split("¦"):
         for sentence in re.split(r"(?<=[a-z0-9)\"”][.!?]) (?=[A-Z\"“])", part):
             whole = sentence[:1].isupper() and sentence.count("(") == sentence.count(")")
@@ -426,7 +426,7 @@ def _geography(entry: Entry) -> Iterator[Sentence]:
 
 
 def area_of(entry: Entry) -> str:
-    """Return the total area. The source rounds the smallest area to 0."""
+    """Return the total area. The source rounds the smallest area (the Vatican's) to 0."""
     return "0.44 sq km" if entry.code == "vt" else entry.first("Geography", "Area", "total")
 
 

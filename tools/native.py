@@ -1,6 +1,6 @@
 """Compile the modules that every event passes through, with mypyc: ``python tools/native.py`` (``--help`` for more).
 
-The types are those of the annotations, so the source stays plain Python. `ravestate.compiled` says how the compiled
+mypyc takes the types from the annotations, so the source stays plain Python. `ravestate.compiled` says how the compiled
 modules are found. The same code is a build hook of hatchling, for wheels with compiled modules.
 """
 
@@ -38,8 +38,8 @@ look-up."""
 
 
 FLAGS = "-O2 -g0 -w -fno-semantic-interposition -fvisibility=hidden"
-"""The options of the C compiler. Without the last two, another library could replace each function, so each call
-between the modules would take longer."""
+"""The options of the C compiler. Without the last two options, another library could replace each function, so each
+call between the modules would take longer."""
 
 
 def load_compiled() -> Any:

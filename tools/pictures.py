@@ -254,7 +254,7 @@ def _bars(records: list[t.Record], end: float) -> Iterable[Bar]:
             done.append(bar)
         if kind is not None:
             open_[activation] = Bar(rule, kind, time, end)
-            if bar is not None and bar.kind == kind:  # goes on
+            if bar is not None and bar.kind == kind:  # the same state goes on
                 done.remove(bar)
                 open_[activation].begin = bar.begin
 

@@ -25,7 +25,7 @@ from ravestate.testing import simulate
 
 FILE = Path(vectors.__file__).with_name(vectors.FILE)
 WIDTH, LEVELS = 384, 63
-"""The length of a row, and its largest number.
+"""The length of a vector, and the largest absolute value of its numbers.
 
 With 63 levels, 98.5 % of 539 utterances have the same nearest example (of 16,000) as with exact vectors. With 127
 levels, the share is 99.1 %, but the file is 16 % larger. With 31 levels, the share is 93.5 %. With half the dimensions,

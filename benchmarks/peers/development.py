@@ -1,4 +1,4 @@
-"""The sentences with which the end of a turn was developed. The measurement uses other sentences.
+"""The sentences that helped to develop the detection of the end of a turn. The measurement uses other sentences.
 
 `voice.ends_of_turns(model, 40, OPEN, COMPLETE)` measures them.
 """

@@ -19,8 +19,8 @@ PIECE, STEP = 480, 48
 The file of the loudspeaker is searched for the pieces.
 """
 LOUD = 300
-"""A piece counts only if its greatest amplitude is above this level. Such a piece is in the file only if its sentence
-is."""
+"""Only pieces whose greatest amplitude is above this level are used. Such a loud piece is in the file only if its
+sentence was played."""
 FRAME = 240
 """The number of samples of a frame, for measuring its power: 10 ms."""
 

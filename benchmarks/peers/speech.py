@@ -124,7 +124,8 @@ def cough(seed: int) -> bytes:
 
 
 class Room(WavLine):
-    """A line in a room whose microphone hears the loudspeaker, 30 ms later and softer, with two reflections."""
+    """A line (microphone and loudspeaker) in a room. The microphone hears the loudspeaker, 30 ms later and softer, with
+    two reflections."""
 
     decibels = -10.0
 
@@ -162,7 +163,7 @@ class Room(WavLine):
 
 @contextlib.contextmanager
 def echoing() -> Iterator[None]:
-    """Make every recording play in a `Room`."""
+    """Make every recording play in a `Room`, within the ``with`` block."""
     with patch.object(opening, "WavLine", Room):
         yield
 

@@ -24,19 +24,22 @@ FURTHER = {
 
 COMPILED_TARGETS = {1: 0.6, 4: 0.4, 8: 0.3}
 PURE_TARGETS = {1: 2.6, 4: 1.9, 8: 1.6}
-"""For each length of the chain, in both builds: the maximum of our time divided by the time of CLIPS."""
+"""Both dicts map the length of the chain to a target: the maximum of our time divided by the time of CLIPS. The first
+is for the compiled build, the second for pure Python."""
 
 LIVED_IN = 3000
-"""The number of inputs before the second measurement of CLIPS, because clipspy slows down with every input."""
+"""The number of inputs that CLIPS takes before its second measurement. This shows how clipspy slows down with every
+input."""
 
 
 def at_most(ratio: float) -> bool:
-    """The target: no more time than CLIPS needs."""
+    """Return whether a ratio meets the target: no more time than CLIPS needs."""
     return ratio <= 1
 
 
 def ask(bench: Bench) -> Iterable[Figure]:
-    """Compare Ravestate with CLIPS (the target), the other peers, the floor and the reference implementation."""
+    """Compare Ravestate with CLIPS (which sets the target), the other peers, the floor and the reference
+    implementation."""
     ours, clips, floor, reference = bench.ours(), bench.clips(), bench.callbacks(), bench.reference()
     further = {name: bench.peer(script) for name, script in FURTHER.items()}
     goals = COMPILED_TARGETS if build() == COMPILED else PURE_TARGETS

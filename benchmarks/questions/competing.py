@@ -1,10 +1,10 @@
 """How long to decide among a thousand rules for one slot?
 
-There are four shapes:
+The rules compete in four ways (*shapes*):
 
 - Tied: all rules wait for the input, and the first declared rule wins.
 - Weighted: all rules wait for the input, and the greatest weight, declared in the middle, wins.
-- Predicates: the same, with a predicate on the payload in each rule.
+- Predicates: as Weighted, but each rule also has a predicate on the payload.
 - Topics: ``input & topic_i``. A classifier declares a thousand topics and raises one. The rule of that topic wins
   over the other rules and a fallback.
 """
@@ -91,7 +91,7 @@ def compete(shape: str, rules: int, inputs: int) -> list[float]:
 
 
 def ask(bench: Bench) -> Iterable[Figure]:
-    """Measure each shape, and CLIPS with a thousand rules on the input, which decides by salience."""
+    """Measure each shape. Measure also CLIPS, which decides by salience, with a thousand rules on the input."""
     ours, clips = bench.ours("benchmarks.questions.competing"), bench.clips()
     times: dict[str, list[float]] = {shape: [] for shape in TITLES}
     theirs = []

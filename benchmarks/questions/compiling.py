@@ -1,8 +1,8 @@
 """How long does it take to compile a policy?
 
-The policy has the agent of ``answer`` (a chain of one rule), and many rules with a signal of their own. The time of the
-declarations does not count. CLIPS builds as many rules from text. The second row compares the time per rule in a large
-policy with that in a small one.
+The policy has the agent of ``answer`` (a chain of one rule), and many rules with a signal of their own. The figure does
+not include the time of the declarations. CLIPS builds as many rules from text. The second row compares the time per
+rule in a large policy with the time per rule in a small policy.
 """
 
 from __future__ import annotations
@@ -20,7 +20,7 @@ FEW, MANY = 100, 10_000
 
 
 def compiling(unrelated: int) -> float:
-    """Return the seconds to compile."""
+    """Return the seconds that compiling takes with this number of unrelated rules."""
     module = Agent(1, unrelated).module
     begin = time.perf_counter()
     rs.compile(module)

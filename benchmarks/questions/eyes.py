@@ -98,6 +98,7 @@ async def _talk(source: str, memory: Path) -> tuple[float, float]:
             await context.next(nlp.analysis.changed, timeout=60)
             waits.append(time.perf_counter() - start)
             await asyncio.sleep(0.3)
-    # Measure from the first look to the last, because the chat may begin and end in the middle of a period.
+    # Measure from the first look to the last, because the chat may begin and end in the middle of the time between two
+    # looks.
     rate = (len(looks) - 1) / (looks[-1] - looks[0]) if looks else 0.0
     return statistics.median(waits), rate

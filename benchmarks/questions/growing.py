@@ -2,17 +2,18 @@
 
 Each workload runs on the bare engine, whose rules do nothing. It runs at one size and at ten times that size:
 
-- Pairs: n spikes of each of two signals, for a rule `a & b`. The same for a rule that writes a slot.
-- Halves: n spikes wait for a counterpart, which comes only for the last spike.
+- Pairs: n spikes of each of two signals, for a rule `a & b`. The rule writes nothing, or it writes a slot.
+- Halves: for a rule `a & b`, n spikes of `a` wait for a spike of `b`. At the end, a single spike of `b` comes.
 - Topics: an input among n rules `input & topic_i`. The topics are inputs, or a classifier raises them.
 - Fallbacks: an input among n rules `input & topic_i` and n rules on the input alone.
 - Stalemates: n inputs, each of which makes two pairs of rules wait for each other.
 - Burst: n spikes at once, for a rule that writes a slot and one that writes none.
 - Pairs beside a fallback, or beside another pair: as pairs, but another rule writes the same slot.
-- Shared half: n spikes of each of two signals for a rule `a & b`; a second rule `a & c` waits as well.
+- Shared half: n spikes of each of two signals for a rule `a & b`. A second rule `a & c` also takes the spikes of `a`.
 - Recovering and guarded fallbacks: an input among n fallbacks with a cooldown, or with a predicate on a slot.
 - Independent writers: an input among n rules, each with a slot of its own.
-- Cliques: an input among rules `input & topic_i`. The topics raise each other by n links, and no topic occurs.
+- Cliques: an input among rules `input & topic_i`. Rules raise each topic from each other topic (n links in all), and no
+  topic occurs.
 
 Ten times as many spikes, rules or links may take about ten times the time.
 """
@@ -139,7 +140,8 @@ def burst(size: int, *, writes: bool) -> float:
 
 
 def timed(engine: Engine, given: Sequence[Event], expected: int, until: float = 0.0) -> float:
-    """Return the seconds of processor time from events to their runs. The deadlines up to `until` (seconds) count."""
+    """Return the seconds of processor time from events to their runs. The time includes the deadlines up to `until`
+    (seconds)."""
     begin = time.process_time()
     runs = play(engine, given)
     while (due := engine.next_deadline()) is not None and due <= until:
@@ -224,7 +226,7 @@ def grow(workload: str, size: int) -> float:
     """Return the seconds of processor time of a workload at a size.
 
     Earlier workloads leave thousands of dead records of policies. Collect these first, or their removal (up to 50 ms)
-    would count for a later workload.
+    would add to the time of a later workload.
     """
     gc.collect()
     return WORKLOADS[workload][1](size)

@@ -11,7 +11,7 @@ from benchmarks.bench import Bench
 from benchmarks.figures import Figure, compare
 
 NONE = 0.001
-"""The share of a core that counts as none."""
+"""The target: an idle agent takes less than this share of a core."""
 
 
 def ask(bench: Bench) -> Iterable[Figure]:

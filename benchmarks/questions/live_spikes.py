@@ -1,10 +1,10 @@
 """What does a spike cost when many are alive?
 
-Each of three shapes runs with 10,000 and with 100 live spikes:
+A spike is live until the engine removes it. Each of three shapes runs with 10,000 and with 100 live spikes:
 
 - Burst: all spikes are raised at once, and one rule handles each.
 - One more: the rule of the spikes waits for a second signal that never comes; one more spike arrives.
-- Beside: an input gets its answer while these spikes wait.
+- Beside: an input gets its answer while the spikes wait for the second signal.
 """
 
 from __future__ import annotations
@@ -21,7 +21,7 @@ from benchmarks.peers.wire import serve
 
 FEW, MANY = 100, 10_000
 SAMPLE = 100
-"""Spikes in one measurement."""
+"""The number of further spikes, and of inputs, in one measurement."""
 
 
 def burst(spikes: int) -> float:

@@ -3,7 +3,7 @@
 A thousand contexts of one policy run on one loop. First, inputs wait in all contexts, which gives the maximum number of
 inputs a second. Then inputs come at half of this rate, each to a random context. The time of an input ends when its
 answer is written. It begins when the input is due, even if the loop is busy then. The loop never sleeps, so the
-benchmark uses the process's own clock, and other programs do not count.
+benchmark uses the process's own clock, which leaves out the time of other programs.
 
 Evenly spaced inputs show the delays that are ours: garbage collection, and the contexts' turns on the loop. Inputs at
 random moments (exponential pauses) also wait for each other. The last figure compares our delays with those of an ideal
@@ -29,7 +29,7 @@ CONTEXTS = 1_000
 LIMIT = 3.0
 """The maximum of the 99th percentile, as a multiple of the median."""
 STEPS, WARM = 1_000, 200
-"""The loop that measures the time of a step: its number of steps, and how often the loop runs."""
+"""To measure the time of one step, the floor calls `add` with `STEPS` steps, `WARM` times."""
 
 
 class Users:
@@ -63,7 +63,8 @@ class Users:
         self.policy = rs.compile(module)
 
     async def serve(self, contexts: Sequence[rs.Context], dues: Sequence[float]) -> list[float]:
-        """Put an input into a random context at each of these times (seconds); return how long each answer took."""
+        """Put an input into a random context at each of these times (seconds); return the seconds from each of these
+        times to the answer."""
         chosen = random.Random(1).choices(contexts, k=len(dues))
         self.answered = [0.0] * len(dues)
         self.left = len(dues)
@@ -111,7 +112,8 @@ def load(inputs: int) -> dict[str, float]:
 
 
 def bare_loop(dues: Sequence[float], each: float) -> list[float]:
-    """Return how long a loop of about `each` seconds of constant work takes if it begins at these times (seconds)."""
+    """Do constant work of about `each` seconds at each of these times (seconds); return how long after its due time
+    each work ends."""
     begin = time.process_time()
     for _ in range(WARM):
         add(STEPS)

@@ -3,8 +3,8 @@
 Many contexts of one policy run on one loop, in real time. Each has answered inputs, and all spikes have aged. The figure
 is the memory that tracemalloc counts, divided by the number of contexts.
 
-The other figures are the processor time to make and start 10,000 contexts, and that of a full garbage collection with
-100,000 contexts at rest.
+Two other figures are processor times: to make and start 10,000 contexts, and for a full garbage collection with 100,000
+contexts at rest.
 """
 
 from __future__ import annotations
@@ -29,12 +29,12 @@ AGED = 6.0
 
 
 def held(contexts: int, k: int, unrelated: int) -> float:
-    """Return the bytes for each context."""
+    """Return the bytes that each context holds."""
 
     async def measure() -> float:
         agent = Agent(k, unrelated)
         policy = rs.compile(agent.module)
-        async with rs.Context(policy) as first:  # objects that all contexts share do not count
+        async with rs.Context(policy) as first:  # makes the objects that all contexts share
             await agent.turn(first, "warm", "answer warm")
         gc.collect()
         tracemalloc.start()

@@ -1,11 +1,13 @@
 """How much time does an agent add to a message of ROS, and does it keep up with fast topics?
 
 - Share: a text goes to an echo node and back, and then a rule sends the next text. The floor is a bare rospy or rclpy
-  node that does the same. Our share is the difference: the agent, and in ROS 2 two hops to the bridge process.
+  node that does the same. Our share is the difference: the agent, and in ROS 2 two hops to the bridge. (The bridge is a
+  process that connects the agent with ROS.)
 - Stream: numbers come a thousand times a second. One slot takes all of them, another the latest. None may be lost, out
-  of order or left waiting, and neither the agent nor its bridge may grow after the first quarter.
+  of order or left waiting. Neither the agent nor its bridge may grow after the first quarter of the numbers.
 - Images: 640x480 colour images come 30 times a second. The number of copies is the number of bytes that the bridge
-  writes, divided by the number of bytes of the images. The agent reads the bridge's memory.
+  writes, divided by the number of bytes of the images. The agent reads the images in the memory that the bridge has
+  written.
 """
 
 from __future__ import annotations
@@ -95,7 +97,7 @@ def _ask(bench: Bench, version: int) -> Iterable[Figure]:
 
 
 def network(bench: Bench, version: int) -> dict[str, Any]:
-    """Return the settings of an agent and the variables of a node; start a master if one is needed."""
+    """Return the settings of an agent and the environment variables of a node; start a master if one is needed."""
     if version == 2:
         domain = 1 + os.getpid() % 100
         return {"agent": {"domain": domain}, "nodes": {"ROS_DOMAIN_ID": str(domain)}}
@@ -256,7 +258,7 @@ async def _made(context: rs.Context, ros: Any) -> Any:
 
 
 async def _both(context: rs.Context, ros: Any, *topics: str) -> None:
-    """Wait until each topic has its other end."""
+    """Wait until another node publishes or subscribes to each topic."""
     made = await _made(context, ros)
     async with asyncio.timeout(WAIT):
         while True:
@@ -276,7 +278,7 @@ def _memory(pid: int) -> int:
 
 
 def _held(numbers: list[int]) -> int:
-    """Return an estimate of the bytes of the measurement's own list: for each entry, a number and its place."""
+    """Return an estimate of the bytes of the measurement's own list: for each entry, a number and a pointer to it."""
     return len(numbers) * (32 + 8)
 
 
@@ -287,7 +289,8 @@ def _work(pid: int) -> float:
 
 
 def _written(pid: int) -> int:
-    """Return the bytes that a process has written to files and memory, without those it has sent."""
+    """Return the bytes that a process has written to files and memory, without the bytes that it has sent over
+    sockets."""
     for line in Path(f"/proc/{pid}/io").read_text().splitlines():
         if line.startswith("wchar:"):
             return int(line.split()[1])

@@ -1,7 +1,7 @@
 """How fast is the complete text agent, and how much memory does it hold?
 
-- Decided: the time from the input until a rule writes an answer or calls the language model. The time of the model does
-  not count. All modules of ``ravestate chat`` are loaded, with everything that they load on first use.
+- Decided: the time from the input until a rule writes an answer or calls the language model. The figure does not
+  include the model's time. All modules of ``ravestate chat`` are loaded, with everything that they load on first use.
 - Prompt: the time from the start of the process to the console's prompt on a terminal.
 - Held: the resident memory of the agent, without the language model, which runs in a process of its own.
 """
@@ -90,7 +90,7 @@ def decide(rounds: int) -> dict[str, list[float]]:
                             times.append(took)
                         context.put(rawio.input, "")  # interrupts the answer
                         await context.quiet()
-                pages = int(Path("/proc/self/statm").read_text().split()[1])  # noqa: ASYNC240  # no file of a disk
+                pages = int(Path("/proc/self/statm").read_text().split()[1])  # noqa: ASYNC240  # /proc is not on a disk
                 held.append(float(pages * os.sysconf("SC_PAGE_SIZE")))
         return times
 

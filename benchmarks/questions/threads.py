@@ -14,7 +14,7 @@ from benchmarks.figures import Figure, compare
 
 
 def ask(bench: Bench) -> Iterable[Figure]:
-    """Compare a plain function with an async one, and its extra time with the floor."""
+    """Compare a plain function with an async one, and the plain function's extra time with a bare hop into a thread."""
     ours, floor = bench.ours(), bench.callbacks()
     plain, direct, bare = [], [], []
     inputs = bench.several(100, 50)

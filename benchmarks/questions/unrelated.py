@@ -16,7 +16,7 @@ FEW, MANY = 10, 10_000
 
 
 def ask(bench: Bench) -> Iterable[Figure]:
-    """Compare an input beside many rules with one beside few."""
+    """Compare an input beside many rules with an input beside few rules."""
     small, large = bench.ours(), bench.ours()
     few, many = [], []
     inputs = bench.several(100, 50)

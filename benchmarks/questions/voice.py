@@ -1,14 +1,16 @@
 """How well does the agent understand speech, take turns, and give way; and how long does the user wait?
 
 - Words: the share of wrong words in recordings of people (LibriVox, from Debian's pocketsphinx-testdata).
-- Wait: the time from the end of the user's speech to the first sound of the answer, on the clock of this machine. It has
-  four parts: the pause that the settings demand, understanding, synthesis, and the rest, which is our own share. To
-  understand, one model finds the words, and another judges whether the turn has ended. The slower of the two counts.
-- False cuts and missed ends: a recording has complete sentences, and sentences with a pause of a second in the middle. A false cut
-  ends the turn in such a pause. With a missed end, the agent waits for the longest pause after a complete sentence.
+- Wait: the time from the end of the user's speech to the first sound of the answer, on the clock of this machine. It
+  has four parts: the pause that the settings demand, understanding, synthesis, and the rest, which is our own share. To
+  understand, one model finds the words, and another judges whether the turn has ended. Both work at the same time, so
+  only the slower model adds to the wait.
+- False cuts and missed ends: a recording has complete sentences, and sentences with a pause of a second in the middle.
+  A false cut ends the turn in such a pause. With a missed end, the agent does not notice that a sentence is complete,
+  and waits for the longest pause of the settings.
 - Interruptions, back-channels and the echo are measured on the time line of a recording, in virtual time.
 - Heard: the words of an interrupted story that the user heard, according to the agent and according to the
-  loudspeaker's file. A word counts if at least half of it is in the file.
+  loudspeaker's file. A word counts as heard if at least half of it is in the file.
 """
 
 from __future__ import annotations
@@ -109,7 +111,8 @@ def word_error_rate(model: str) -> float:
 
 
 class LiveLine:
-    """A line with a track as the microphone. It notes the time of each answer's first sound, by the machine's clock."""
+    """A line (microphone and loudspeaker) whose microphone plays a track. It notes when the first sound of an answer
+    comes."""
 
     cancels_echo = True
     ended = False
@@ -289,7 +292,7 @@ def back_channels(rounds: int) -> tuple[float, int]:
 
 
 def echoes(rounds: int) -> int:
-    """Return the number of utterances and cuts that the agent's own voice caused, at -10 dB."""
+    """Return the number of utterances and cuts that the agent's own voice caused, with an echo at -10 dB."""
     faults = 0
     with speech.echoing():
         for number in range(rounds):

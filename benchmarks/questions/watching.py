@@ -3,7 +3,8 @@
 The agent of the question ``answer`` (a chain of four rules) has a conversation on the web page, with or without the
 board. In one case, a board's browser is connected over a WebSocket. The agent answers one input after another. This is
 the worst case for the board: a rule that computes would make the same records in more time. Each figure is the
-processor time of an answer. Within each measurement, the recorder reaches its limit and starts again several times.
+processor time of an answer. Within each measurement, the recorder, which keeps the board's records, reaches its limit
+and starts again several times.
 """
 
 from __future__ import annotations
@@ -32,7 +33,7 @@ TURNS = 15
 
 
 def chain() -> tuple[rs.Module, rs.Slot[str], rs.Slot[str]]:
-    """The agent: each rule raises the next one's signal."""
+    """Return the agent's module, its input slot and its output slot. Each rule raises the signal for the next rule."""
     module = rs.Module("chain")
     heard, output = module.slot("heard", ""), module.slot("output", "", always=True)
     cause: rs.Signal[Any] = heard.changed
@@ -57,7 +58,7 @@ def chain() -> tuple[rs.Module, rs.Slot[str], rs.Slot[str]]:
 
 
 class Talk:
-    """A conversation of a web page, with the board beside it or not."""
+    """A conversation of a web page, with or without the board."""
 
     def __init__(self, context: rs.Context, heard: rs.Slot[str], output: rs.Slot[str], recorder: Any) -> None:
         self._context = context
@@ -67,7 +68,7 @@ class Talk:
         self._number = 0
 
     async def answer(self, seconds: float) -> float:
-        """Answer for so many seconds of processor time. Return the seconds that one answer took."""
+        """Answer for `seconds` seconds of processor time. Return the seconds of processor time for one answer."""
         if self._recorder is not None:
             _begin_anew(self._recorder)
         first, begin, used = self._number, time.process_time(), 0.0
@@ -88,7 +89,8 @@ def _begin_anew(recorder: Any) -> None:
 
 
 def answered() -> list[list[float]]:
-    """Return the seconds for an answer without a board, with a recorder, and with a board: one figure for each turn.
+    """Return three lists: the seconds for an answer without a recorder, with a recorder, and with a recorder and a
+    board. Each list has one figure for each turn.
 
     The contestants take turns in one process, because two processes would differ by more than the contestants do.
     """
@@ -131,7 +133,7 @@ def answered() -> list[list[float]]:
 
 
 async def _read(socket: Any) -> None:
-    """Read the frames as a browser does. The reader shares the loop, so its time counts as well."""
+    """Read the frames as a browser does. The reader shares the loop, so the figure includes the reader's time."""
     async for _ in socket:
         pass
 

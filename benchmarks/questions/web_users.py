@@ -217,7 +217,8 @@ class User:
             self.times.append(time.perf_counter() - began)
 
     async def _answer(self, key: str, text: str) -> None:
-        """Wait for the answer to a text. A filler is no answer. Count answers to another user's words."""
+        """Wait for the answer to a text. A filler, such as "Let me think", is no answer. Count answers to another
+        user's words."""
         self.texts.add(text)
         heard = False
         while True:

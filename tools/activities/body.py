@@ -91,7 +91,8 @@ def pose(body: Body, motion: Motion) -> Array:
     reach = (body.upper_arm + body.forearm) / 1.08
     wrists, elbows = [], []
     for side, path, shoulder in zip((1, -1), (motion.left, motion.right), shoulders, strict=True):
-        # Paths are for an average body: they keep their place relative to the shoulder, and scale with the arm.
+        # Paths are for an average body: they keep their place relative to the shoulder, and scale with the arm's
+        # length.
         own = (path - [side * 0.36, 0, 0]) * reach + [side * body.shoulders, 0, 0]
         bend = np.array([side * (0.25 + motion.elbows), -1.0 + 0.6 * motion.elbows, -0.35])
         wrist, elbow = _joint(

@@ -14,7 +14,7 @@ SWAPPED = [0, 4, 5, 6, 1, 2, 3, 8, 7, 10, 9, *(i + 1 if i % 2 else i - 1 for i i
 
 @dataclass(frozen=True)
 class Conditions:
-    """How much performances differ. `HELD_OUT` goes beyond `TAUGHT` in each respect."""
+    """How much performances differ. `HELD_OUT` (for the score) goes beyond `TAUGHT` (for learning) in each respect."""
 
     bodies: float
     """The spread of the proportions of bodies, as a share."""

@@ -24,7 +24,7 @@ def _much(rng: np.random.Generator, size: float, spread: float = 0.2) -> float:
 
 
 def _path(centre: Array, *moves: tuple[Array, tuple[float, float, float]]) -> Array:
-    """Return a path: a centre, plus waves (T,) along directions."""
+    """Return a path: a centre, plus waves (one number for each frame) along directions."""
     return centre + sum(wave[:, None] * np.array(way) for wave, way in moves)
 
 
@@ -603,7 +603,7 @@ OTHERS: dict[str, tuple[Movement, float]] = {
     "pointing": (pointing, 0.6),
     "lifting": (lifting, 0.6),
 }
-"""Movements that the starter set counts as *none of the activities*."""
+"""Movements from which the starter set learns the answer *none of the activities*."""
 
 STRANGE: dict[str, tuple[Movement, float]] = {
     "juggling": (juggling, 1.6),
@@ -633,4 +633,5 @@ UNTOUCHED: dict[str, tuple[Movement, float]] = {
     "skating": (skating, 0.5),
     "combing": (combing, 0.8),
 }
-"""More such movements, written after the recogniser was finished. No choice in the recogniser depends on them."""
+"""More movements that are not in the starter set, written after the recogniser was finished. No choice in the
+recogniser depends on them."""

@@ -27,9 +27,10 @@ FILE = Path(__file__).parents[2] / "src/ravestate/modules/modality/activity/star
 EXAMPLES = 200
 """The number of performances of each movement from which the set is learnt."""
 TRIALS = 60
-"""The number of further performances of each movement, for fitting the limit and the confidence."""
+"""The number of further performances of each movement, for fitting the limit (the greatest distance to a known
+activity) and the confidence."""
 KEPT = 98.5
-"""The percentage of these performances that must be within the limit."""
+"""The percentage of the further performances that must be within the limit."""
 
 Table = dict[str, tuple[Movement, float]]
 
@@ -43,7 +44,7 @@ def poses_of(
 
 
 def performances(table: Table, count: int, conditions: Conditions, seed: int, *, left: float = 0.5) -> dict[str, Any]:
-    """Return name → pairs of features, of the performance and of its mirror image."""
+    """Return name → one pair for each performance: its features, and those of its mirror image."""
     found: dict[str, Any] = {}
     for index, (name, (movement, rate)) in enumerate(table.items()):
         rng = np.random.default_rng([seed, index])
@@ -96,16 +97,16 @@ def write(starter: Starter, file: Path = FILE) -> None:
 
 @dataclasses.dataclass(frozen=True)
 class Score:
-    """The result on held-out performers."""
+    """The result on held-out performers, which the starter set does not contain."""
 
     right: float
     """The share of performances of known activities that are recognised."""
     wrong: float
-    """The share that the recogniser takes for another activity. It rejects the rest."""
+    """The share of these performances that the recogniser takes for another known activity. It rejects the rest."""
     rejected: float
     """The share of performances of unknown movements that are rejected."""
     untouched: float
-    """The same share, for movements that were written after the recogniser was finished."""
+    """The share of rejected performances among movements that were written after the recogniser was finished."""
     table: dict[str, dict[str, int]]
     """Performed → recognised (empty: nothing) → number."""
 
