@@ -27,7 +27,7 @@ export interface Hello {
   type: "hello";
   /** The version of the protocol. */
   v: number;
-  /** The id of the conversation to resume. Without it, a new conversation begins. */
+  /** The id of the conversation to resume. Without it, or if that conversation is over, a new one begins. */
   session?: string;
   /** The number of the last message that the client has; 0 if it has none. */
   last?: number;
@@ -109,7 +109,7 @@ export interface Welcome {
   session: string;
   /** Whether the server has resumed the conversation that the client asked for. */
   resumed: boolean;
-  /** The number of the oldest message that the server keeps. */
+  /** The number of the oldest message that the server keeps; 1 before the first message. */
   first: number;
   /** The agent's name. */
   agent: string;
@@ -208,7 +208,7 @@ export interface Taken {
 /** The agent wants a picture from this window's camera. */
 export interface Look {
   type: "look";
-  /** The number of this request. The server ignores a `Picture` with an earlier number. */
+  /** The number of this request. The server ignores a `Picture` with another number. */
   n: number;
 }
 

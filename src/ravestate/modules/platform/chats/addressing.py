@@ -28,7 +28,8 @@ def addressed(
     Args:
         text: The message.
         handles: The agent's handles on the messenger, for example ``@robin_bot``. The result leaves them out.
-        names: The agent's names. In a group, a message with one of them is for the agent.
+        names: The agent's names. In a group, a message is for the agent only if it is a command, contains one of these
+            names or handles, or is `called`.
         group: Whether several people may be in the chat.
         called: Whether something else shows that the message is for the agent, e.g. that it replies to the agent.
 
@@ -50,12 +51,12 @@ def addressed(
 
 
 def mentions(text: str, names: Iterable[str]) -> bool:
-    """Return whether a text contains one of the names as a separate word."""
+    """Return whether a text contains one of the names as a separate word, in small or capital letters."""
     return any(name and re.search(rf"(?<!\w){re.escape(name)}(?!\w)", text, re.IGNORECASE) for name in names)
 
 
 def without_mention(text: str, mention: str) -> str:
-    """Return a text without a mention such as ``@robin_bot``.
+    """Return a text without a mention such as ``@robin_bot``, wherever it stands. Drop a comma or colon after it, too.
 
     Example:
         >>> without_mention("@robin_bot, how are you?", "@robin_bot")

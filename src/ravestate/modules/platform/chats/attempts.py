@@ -7,8 +7,8 @@ import logging
 import random
 
 FIRST_WAIT, LONGEST_WAIT = 0.5, 60.0
-"""The first and the longest wait between two attempts (seconds). Each wait is about twice as long as the wait before
-it."""
+"""The first and the longest wait between two attempts (seconds). Until the longest wait, each wait is about twice as
+long as the wait before it."""
 
 TOLD = 3
 """After this many failures in a row, the next failure is logged as a warning."""
@@ -20,7 +20,7 @@ def back_off(attempt: int) -> float:
 
 
 class Attempts:
-    """Counts the consecutive failures of an operation. After each failure, waits about twice as long as before.
+    """Counts the consecutive failures of an operation. Each wait is about twice as long as before, up to a minute.
 
     Args:
         log: The logger of the platform.

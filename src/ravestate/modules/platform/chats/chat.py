@@ -47,9 +47,9 @@ FAREWELL = 10.0
 class Chat:
     """A conversation that rests (has no context) after a silence, and continues with the next message.
 
-    The agent hears the messages in order. A message is done when no rule can write an answer to it any longer. One
-    transaction stores the answers, and marks the message as done. So if the process dies, no message is lost or
-    answered twice.
+    The agent hears the messages in order. A message is done when no rule can write an answer to it any longer. The
+    transaction that marks it as done also stores the answers that are not stored yet. If the process dies, the next
+    process passes the unfinished messages to the agent again, but does not send a stored answer twice.
     """
 
     def __init__(self, room: Room, id: str) -> None:

@@ -21,13 +21,13 @@ UNSEEN = "I couldn't open that."
 
 @dataclass(frozen=True, slots=True)
 class Command:
-    """A command of a user: its name without a slash, and a text that explains all commands."""
+    """A command of a user: its name without a slash, and a text that explains the commands."""
 
     name: str
     explanation: str = ""
 
 
 def explanation(agent: str) -> str:
-    """Return the text that explains the commands to a user."""
+    """Return the text that explains the commands except ``start`` to a user."""
     lines = "\n".join(f"/{name}: {what}" for name, what in COMMANDS.items() if name != "start")
     return f"I am {agent}. Write to me as you would to a friend.\n{lines}"

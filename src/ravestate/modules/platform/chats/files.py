@@ -15,7 +15,8 @@ async def fetched(carrier: Carrier, file: str) -> bytes:
     """Return the bytes of a file; try again after failures.
 
     Raises:
-        DeliveryError: There is no such file, or all attempts have failed.
+        DeliveryError: The messenger will never deliver the file, for example because it is too big, or all attempts have
+            failed.
     """
     for attempt in range(FETCHES):
         try:

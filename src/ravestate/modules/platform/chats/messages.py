@@ -157,5 +157,8 @@ class Carrier(Protocol):
         ...
 
     def can_react(self, emoji: str) -> bool:
-        """Return whether the messenger accepts this emoji as a reaction to a message."""
+        """Return whether the text `emoji` is one emoji that the messenger accepts as a reaction.
+
+        The text may be any answer of the agent.
+        """
         ...

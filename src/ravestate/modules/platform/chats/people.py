@@ -24,6 +24,8 @@ PATIENCE = 30.0
 async def welcome(context: Context, platform: str, person: Person, log: logging.Logger, origin: object) -> None:
     """Add a person to the present users, with the name that memory has for their account.
 
+    If memory has no name, use the person's name on the messenger. If memory fails or takes too long, use no name.
+
     The rules that react to the new user, such as a greeting, get `origin` as ``ctx.origin``.
     """
     name: str | None = person.name

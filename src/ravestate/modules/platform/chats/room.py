@@ -42,7 +42,7 @@ class Room:
         agent: The agent, which makes a context for each chat.
         name: The name of the platform's module. The module has the rules of `connect`, and the settings `ChatSettings`.
         carrier: The connection to the messenger.
-        account: The agent's own id on the messenger. Each account has its own file.
+        account: The agent's own id on the messenger. Each account has its own file, unless the setting `path` names one.
 
     Raises:
         PlatformError: The file with the messages cannot be used.
@@ -60,7 +60,8 @@ class Room:
         self.slot: Any = agent.policy.slots[f"{name}:chat"]
         self.command: Any = agent.policy.signals[f"{name}:command"]
         self.called: set[str] = set()
-        """The agent's names (``interloc.agent``). In a group, a message with one of them is for the agent."""
+        """The agent's names (``interloc.agent``) in the chats that have begun. In a group, a message with one of them is for
+        the agent."""
         plain = re.sub(r"[^\w.-]", "_", account)
         self.store = Store(settings.path or user_folder("data") / "chats" / f"{name}-{plain}.sqlite")
         self.log = logging.getLogger(f"ravestate.{name}")

@@ -20,7 +20,7 @@ class Censor:
         self._plain = logging.Formatter()
 
     def add(self, secrets: Iterable[str]) -> None:
-        """Hide texts. The first call installs the censor."""
+        """Hide texts. If no texts were hidden before, install the censor."""
         if not self._secrets:
             self._make = logging.getLogRecordFactory()
             logging.setLogRecordFactory(self.record)

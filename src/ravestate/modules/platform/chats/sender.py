@@ -13,7 +13,7 @@ from .store import Item, Store
 from .voice import voiced
 
 IN_FLIGHT = 8
-"""The maximum number of deliveries at a time. After a crash, the delivery of at most this many messages is uncertain."""
+"""The maximum number of deliveries at a time. So a crash interrupts at most this many deliveries."""
 
 SHOWN = 2.0
 """A message waits at most this many seconds for the end of a request that shows its draft."""
@@ -82,8 +82,8 @@ class Sender:
     async def show_work(self, chat: str, words: str) -> None:
         """Show in a chat that the agent is writing.
 
-        While an earlier request for the chat runs, do nothing. The next message waits until the request has ended, even if
-        the caller is cancelled.
+        While an earlier request for the chat runs, do nothing. The next message waits until the request has ended, but at
+        most `SHOWN` seconds. The request runs on even if the caller is cancelled.
 
         Raises:
             DeliveryError: The request has failed.

@@ -28,7 +28,7 @@ class ChatSettings(rs.Settings):
     """The settings of a platform with many chats: which people the agent answers, and when a chat rests."""
 
     allow: tuple[int | str, ...] = ()
-    """The people whom the agent answers: their ids or names, or ids of groups. If empty, the agent answers everybody."""
+    """The people whom the agent answers: their ids or user names, or ids of groups. If empty, it answers everybody."""
     rest: float = pydantic.Field(600.0, gt=0, allow_inf_nan=False)
     """A chat rests after this many seconds of silence."""
     chats: int = pydantic.Field(1000, ge=1)

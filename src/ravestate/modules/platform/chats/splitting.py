@@ -9,7 +9,7 @@ ENDS = (re.compile(r"\n\n"), re.compile(r"\n"), re.compile(r"(?<=[.!?…]) "), r
 
 
 def split(text: str, longest: int, *, first: int | None = None) -> list[str]:
-    """Split a text into parts of at most `longest` characters, if possible between paragraphs, sentences or words.
+    """Split a text into parts of at most `longest` characters, if possible between paragraphs, lines, sentences or words.
 
     If `first` is given, the first part has at most `first` characters.
 

@@ -203,7 +203,10 @@ class Store:
     # ------------------------------------------------------------------------------------ messages to deliver
 
     def commit(self, answers: Iterable[Answer], done: Sequence[Entry] = ()) -> None:
-        """Queue answers, and mark incoming messages as done, in one transaction."""
+        """Queue answers, and mark incoming messages as done, in one transaction.
+
+        The senders of the messages then count as known in their chats, or as unknown after a command in `PARTING`.
+        """
         with self._transaction():
             for answer in answers:
                 self._db.execute(
@@ -297,11 +300,11 @@ class Store:
     # ------------------------------------------------------------------------------------ chats, people and notes
 
     def knows(self, chat: str, person: Person) -> bool:
-        """Return whether the agent has already handled a message of this person in this chat."""
+        """Return whether the agent has handled a message of this person in this chat, since their last `PARTING` command."""
         return bool(self._all("SELECT 1 FROM people WHERE chat = ? AND id = ?", chat, person.id))
 
     def forget(self, chat: str) -> None:
-        """Delete all messages of a chat, and the people in it."""
+        """Delete the people in a chat, and all its messages except their keys, by which `take` recognises repetitions."""
         with self._transaction():
             self._db.execute("DELETE FROM people WHERE chat = ?", (chat,))
             self._db.execute("DELETE FROM outbox WHERE chat = ?", (chat,))

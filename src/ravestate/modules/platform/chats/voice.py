@@ -19,13 +19,13 @@ async def words_in(note: bytes) -> str:
     """Return the words in a voice note. The note is the content of a sound file, for example Ogg with Opus.
 
     Raises:
-        PlatformError: Speech recognition is not installed, or the note is damaged.
+        PlatformError: Speech recognition is not installed or fails, or the note is damaged.
     """
     return await asyncio.to_thread(lambda: str(_voiceio().transcribe(note).text))
 
 
 async def spoken(text: str) -> bytes | None:
-    """Return a text as a voice note (Ogg with Opus), or None if speech synthesis fails."""
+    """Return a text as a voice note (Ogg with Opus), or None if speech synthesis fails or is not installed."""
     try:
         return await asyncio.to_thread(lambda: bytes(_voiceio().synthesise(text)))
     except PlatformError:
@@ -33,7 +33,7 @@ async def spoken(text: str) -> bytes | None:
 
 
 async def voiced(message: Outgoing) -> Outgoing:
-    """Return a ``voice`` message with its sound, or as text if synthesis fails. Return other messages unchanged."""
+    """Return a ``voice`` message with its sound, or as text if `spoken` returns None. Return other messages unchanged."""
     if message.kind != "voice":
         return message
     note = await spoken(message.text)

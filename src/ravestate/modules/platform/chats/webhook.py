@@ -42,11 +42,12 @@ async def listen(
         address: The host and the port to listen on.
         header: The name of the header in which the messenger sends the secret.
         secret: The secret. The server refuses a request without it.
-        take: A function to call with the parsed JSON of each request.
+        take: A function to call with the parsed JSON of each request. If it raises a `sqlite3.Error`, the server answers
+            with status 503, so that the messenger sends the request again.
         announce: A function to call as soon as the server listens.
 
     Raises:
-        PlatformError: The address is not one of this machine, or the port is in use.
+        PlatformError: The server cannot listen on the address, for example because the port is in use.
     """
 
     async def post(request: Request) -> Response:

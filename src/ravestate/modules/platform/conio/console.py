@@ -25,7 +25,7 @@ class Screen(Protocol):
     """The input and output of a `Console`: it reads lines and prints texts."""
 
     interactive: bool
-    """Whether a person types the lines."""
+    """Whether a person types the lines at a prompt (`Terminal`)."""
 
     async def __aenter__(self) -> object: ...
 
@@ -49,10 +49,11 @@ class Console:
     """An async iterator of the lines that the user types; meanwhile, `utter` and `grow` print texts.
 
     If input and output are a terminal, there is a prompt with editing and a history, and output appears above it.
-    If not, the console reads and writes plain lines. It removes control characters in both directions, so neither a
+    If not, or with `Pipes` as the screen, the console reads and writes plain lines. It removes control characters in both directions, so neither a
     user nor a language model can move the cursor.
 
-    Call all methods on one event loop. Writing never fails: if the output is gone, the iteration ends.
+    Call all methods on one event loop. Writing never fails: if the output is gone, the iteration ends after the next
+    line.
 
     Example:
         ```python
@@ -78,7 +79,7 @@ class Console:
             screen: The input and output. By default, a `Terminal` or `Pipes`, depending on the streams.
             prompt: The text before the line that the user types.
             history: The file that keeps typed lines. If None, they are kept for this session only.
-            on_key: A function to call when the user presses a key; only a terminal notices keys.
+            on_key: A function to call when a key changes the line that the user types. Only a `Terminal` calls it.
             stdin, stdout: The streams to use instead of standard input and output.
 
         Raises:
@@ -97,7 +98,8 @@ class Console:
 
     @property
     def interactive(self) -> bool:
-        """Whether a person types the lines. If not, all lines and the end of input may arrive at the same time."""
+        """Whether a person types the lines at a prompt. If not, all lines and the end of input may arrive at the same
+        time."""
         return self._screen.interactive
 
     async def __aenter__(self) -> Console:

@@ -27,7 +27,7 @@ USER = "conio"  # the key of the user at the console in ``interloc.users``
     background=True,
 )
 async def listen(ctx: rs.RuleContext) -> None:
-    """Write each typed line to ``rawio.input``; end the agent after the last line."""
+    """Write each typed line that is not blank to ``rawio.input``; end the agent after the last line."""
     expect_prompt()  # so that models load only after the prompt is on the screen
     try:
         await serve(ctx)
@@ -36,7 +36,7 @@ async def listen(ctx: rs.RuleContext) -> None:
 
 
 async def serve(ctx: rs.RuleContext) -> None:
-    """Read lines until the end of input."""
+    """Read lines until the input ends, the user interrupts, or the output is gone. Then stop the agent."""
     await asyncio.to_thread(prepare)
     history = history_file() if ctx.settings.history else None
 

@@ -1,4 +1,7 @@
-"""The account: it logs in, joins the Matrix rooms that invite it, and passes their messages to the account's `Room`."""
+"""The account: it logs in, joins the Matrix rooms whose invitations `allow` permits, and passes on their messages.
+
+The messages go to the class `Room` of `chats`, which has a chat for each Matrix room.
+"""
 
 from __future__ import annotations
 
@@ -61,7 +64,7 @@ async def run(agent: Agent, settings: Settings) -> None:
 
 
 def _key_folder(settings: Settings) -> str:
-    """Return the folder for the keys of encrypted rooms; an empty text if ``matrix-encrypted`` is not installed."""
+    """Make and return the folder for the keys of encrypted rooms; if encryption is not installed, return an empty text."""
     if not ENCRYPTION_ENABLED:
         return ""
     folder = (settings.path.parent if settings.path else user_folder("data") / "chats") / "matrix-keys"
@@ -70,7 +73,7 @@ def _key_folder(settings: Settings) -> str:
 
 
 async def _log_in(client: AsyncClient, settings: Settings) -> None:
-    """Log in; if the server does not answer, try again until it does."""
+    """Log in. After any failure except a refused account, try again."""
     attempts = Attempts(log, f"{settings.homeserver} does not answer")
     while True:
         try:
@@ -211,7 +214,7 @@ class Inlet:
             self._room.warn(room, f"is not joined: {', '.join(inviters)} is not in matrixio.allow")
 
     def _accept(self, room: str) -> None:
-        """Join a room in a task. The server reports an invitation only once, so store it until the agent has joined."""
+        """Join a room in a task. The server reports an invitation only once, so store it until the agent joins or gives up."""
         if room not in self._joining:
             self._room.store.note("invited", json.dumps([*self._joining, room]))
             self._joining[room] = asyncio.create_task(self._join(room))

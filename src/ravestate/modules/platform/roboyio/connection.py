@@ -34,7 +34,7 @@ class Connection:
         node: The node; this class does not close it.
         sleep: A function that waits for some seconds on the context's clock.
         now: A function that returns the time on the context's clock (seconds).
-        speech_timeout: The robot may take at most this many seconds to speak an utterance.
+        speech_timeout: If the robot speaks through a service, an utterance may take at most this many seconds.
     """
 
     def __init__(
@@ -54,7 +54,7 @@ class Connection:
         self._speech_timeout = speech_timeout
         self._pose = Pose()
         self._angles: dict[str, float] = {}
-        """The present angles of the axes with speed commands."""
+        """The estimated angles of the axes with speed commands: the speeds that were sent, multiplied by their times."""
         self._targets: dict[str, float] = {}
         """The angles at which the turning axes must stop."""
         self._ports: dict[str, Channel] = {}
@@ -97,7 +97,11 @@ class Connection:
         await self._send("speak", self.robot.speak, text)
 
     async def express(self, name: str) -> None:
-        """Show an expression, if the robot has this expression."""
+        """Show an expression, if the robot has this expression.
+
+        Raises:
+            PlatformError: The robot does not answer, or refuses.
+        """
         if self.robot.express is not None and name in self.robot.express.faces:
             await self._send("express", self.robot.express, self.robot.express.faces[name])
 
@@ -107,7 +111,10 @@ class Connection:
         await asyncio.gather(*(self._move(name, axis) for name, axis in self.robot.head.items()))
 
     async def perform(self, name: str) -> None:
-        """Perform a gesture: the robot's own, or a nod or a shake with the head. Ignore a gesture that the robot lacks."""
+        """Perform a gesture: the robot's own, or a nod or a shake with the head.
+
+        Ignore a gesture that the robot lacks. A head that turns by speed commands cannot nod or shake.
+        """
         gesture = self.robot.gesture
         if gesture is not None and name in gesture.gestures:
             await self._send("gesture", gesture, gesture.gestures[name])

@@ -38,7 +38,7 @@ class Settings(rs.Settings):
     look_around: float = pydantic.Field(8.0, gt=0, allow_inf_nan=False)
     """The mean number of seconds between two glances of an idle robot."""
     speech_timeout: float = pydantic.Field(60.0, gt=0, allow_inf_nan=False)
-    """The longest time (seconds) that the robot may take to speak an utterance."""
+    """The longest time (seconds) that a robot with a service for speech may take to speak an utterance."""
 
 
 module = rs.Module("roboyio", requires=(rawio, interloc, ros1, ros2), settings=Settings)

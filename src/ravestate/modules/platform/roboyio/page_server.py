@@ -23,7 +23,7 @@ from .stand_in import StandIn
 
 PAGE = Path(__file__).with_name("page")
 LONGEST = 4096
-"""The maximum number of characters that a visitor may say at a time."""
+"""The robot hears at most this many characters of a message; the rest is cut off."""
 
 
 class PageServer:
@@ -125,7 +125,10 @@ class _Quiet(uvicorn.Server):
 
 
 def _is_own_page(websocket: WebSocket) -> bool:
-    """Return whether the connection comes from this server's own page. Other sites must not talk to the robot."""
+    """Return whether the connection comes from this server's own page, or from a program that is no browser.
+
+    Other sites must not talk to the robot.
+    """
     host = websocket.headers.get("host", "")
     origin = websocket.headers.get("origin")
     name = urlsplit(f"//{host}").hostname

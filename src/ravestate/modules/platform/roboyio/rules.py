@@ -131,7 +131,7 @@ async def understand(ctx: rs.RuleContext) -> None:
     background=True,
 )
 async def speak(ctx: rs.RuleContext) -> rs.Resign | None:
-    """Speak each utterance, one after another."""
+    """Speak each utterance, one after another. After a failure, ``rawio.heard`` does not get the words."""
     text = speakable(ctx.payload(rawio.output.changed))
     if (robot := ctx[body]) is None or not text:
         return rs.Resign("there is no robot" if text else "there is nothing to say aloud")
@@ -148,7 +148,7 @@ async def speak(ctx: rs.RuleContext) -> rs.Resign | None:
 
 
 def speakable(text: str) -> str:
-    """Return a text without emoji and other symbols that have no sound."""
+    """Return a text without emoji and other symbols that have no sound; empty if no letter or digit is left."""
     kept = "".join(each for each in text if unicodedata.category(each) not in ("So", "Sk", "Cf") and each != "\ufe0f")
     return " ".join(kept.split()) if any(each.isalnum() for each in kept) else ""
 
@@ -158,7 +158,7 @@ def speakable(text: str) -> str:
 
 @module.rule(when=words.changed.detached(), reads=direction, writes=gaze, background=True)
 async def face_speaker(ctx: rs.RuleContext) -> None:
-    """Look at the person who speaks."""
+    """Look at the person who speaks; straight ahead if the direction is unknown."""
     ctx[gaze] = Pose(yaw=ctx[direction] or 0.0)
 
 

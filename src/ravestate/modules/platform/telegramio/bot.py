@@ -57,7 +57,7 @@ async def run(agent: Agent, settings: Settings, token: str) -> None:
 
 
 async def _log_in(bot: Bot, root: str) -> User:
-    """Wait until the server answers, and return the bot's own user."""
+    """Log in, and return the bot's own user. After any failure except a refused token, try again."""
     attempts = Attempts(log, f"{root} does not answer")
     while True:
         try:

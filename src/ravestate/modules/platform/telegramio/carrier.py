@@ -35,7 +35,7 @@ class TelegramCarrier:
     Args:
         bot: The bot.
         rate: The maximum number of messages per second.
-        drafts: Whether `show_work` shows the words so far.
+        drafts: Whether `show_work` shows the words so far in private chats.
     """
 
     longest: int = MessageLimit.MAX_TEXT_LENGTH
@@ -56,7 +56,7 @@ class TelegramCarrier:
             self._ids[_numbering(chat)].append(int(id))
 
     def trace(self, chat: str) -> str:
-        """Return the newest known message id. Call this before an attempt."""
+        """Return the newest known message id; an empty text if none is known. Call this before an attempt."""
         return str(max(self._ids[_numbering(chat)], default=""))
 
     def can_react(self, emoji: str) -> bool:
@@ -134,7 +134,7 @@ class TelegramCarrier:
             return bytes(await found.download_as_bytearray())
 
     async def show_work(self, chat: str, words: str) -> None:
-        """Show in the chat that the agent is writing. In a private chat, also show the words as a draft.
+        """Show in the chat that the agent is writing. In a private chat with drafts, show the words so far instead.
 
         Telegram removes a draft when the next message comes, or after 30 s.
         """

@@ -18,7 +18,8 @@ async def serve(agent: Agent) -> None:
     """Serve the agent to the users of its Telegram bot, until cancelled; then end the conversations cleanly.
 
     Raises:
-        PlatformError: The token is missing or wrong, another program polls the bot, or a package is missing.
+        PlatformError: The token is missing or wrong, another program polls the bot, or a package is missing. Or the webhook
+            or the file with the messages cannot be used.
     """
     settings = cast(Settings, agent.settings["telegramio"])
     token = settings.token.get_secret_value() if settings.token else ""

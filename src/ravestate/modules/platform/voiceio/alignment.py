@@ -25,7 +25,7 @@ class Word:
 
 
 def places_of(text: str) -> list[tuple[int, int]]:
-    """Return the beginning and the end of each word of a text."""
+    """Return the beginning and the end of each word that has a letter or a digit."""
     return [(word.start(), word.end()) for word in _WORD.finditer(text) if any(c.isalnum() for c in word[0])]
 
 

@@ -23,7 +23,7 @@ from .pitch import NEEDED, change, is_another, pitch
 from .sound import Samples, samples
 
 BEFORE = 12
-"""A turn includes this many chunks before its onset, so that a soft beginning is not cut off."""
+"""A turn begins with this many chunks up to its onset and including it, so that a soft beginning is not cut off."""
 ONSET = 2
 """This many successive chunks of speech are an onset. A click lasts for fewer chunks."""
 STAY = 0.7
@@ -114,7 +114,8 @@ class Ear:
         self._clean = bytearray()  # the sound without echo that does not fill a chunk yet
         self._before: deque[bytes] = deque(maxlen=BEFORE)  # the last chunks before a turn
         self._lately: deque[bool] = deque(maxlen=ONSET)  # whether the last chunks are articulate
-        self._in_a_row = self._silent = 0  # how many of the newest chunks in a row are speech; how many are silence
+        # How many of the newest chunks in a row are speech; while the user speaks, how many came since the last speech.
+        self._in_a_row = self._silent = 0
         self._spoken = self._articulate = 0  # how many chunks, and how many articulate ones, came since the onset
         self._at_limit = 0  # how many samples in this second of speech are clipped
         self._sure = False  # whether the ear has yielded ``articulate`` since the onset
@@ -139,7 +140,7 @@ class Ear:
         return turn
 
     def reset(self) -> None:
-        """Forget the present turn, and all sound so far."""
+        """Forget the present turn, and the chunks before it. Keep what the ear knows about the echo."""
         self.take()
         self.speaking = False
         self._in_a_row = self._silent = 0

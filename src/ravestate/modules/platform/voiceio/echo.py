@@ -19,7 +19,7 @@ _SET_RATE, _SET_DENOISE, _SET_STATE, _SET_SUPPRESS, _SET_SUPPRESS_ACTIVE = 24, 0
 
 
 class EchoCanceller:
-    """The echo canceller of one line.
+    """The echo canceller of one line (a microphone and a loudspeaker).
 
     Raises:
         OSError: The library is not installed.

@@ -28,7 +28,7 @@ def whisper_model(name: str) -> Path:
     """Return the folder of a model for faster-whisper.
 
     Args:
-        name: A folder's path, or the name of a folder in `folders`; empty for the best model on this machine.
+        name: A folder's path, or the name of a folder inside one of `folders()`; empty for the best model there.
 
     Raises:
         PlatformError: There is no such model; the message says how to get one.
@@ -86,9 +86,9 @@ def fetch_whisper(name: str, progress: Callable[[str], None]) -> Path:
 
 
 def piper_voice(name: str) -> Path | None:
-    """Return the file of a voice for Piper, by its path or its name in `folders`; None if there is none.
+    """Return the file of a voice for Piper, by its path or its name in one of `folders()`; None if there is none.
 
-    An empty name fits any voice.
+    An empty name fits any voice in these folders.
     """
     if name and Path(name).expanduser().suffix == ".onnx" and Path(name).expanduser().is_file():
         return Path(name).expanduser().absolute()
@@ -100,9 +100,10 @@ def piper_voice(name: str) -> Path | None:
 
 
 def piper_python(setting: Path | None) -> str | None:
-    """Return a Python interpreter that has Piper; None if there is none.
+    """Return a Python interpreter for Piper; None if there is none.
 
-    The candidates are the interpreter in the setting, this interpreter, and the one that ``make voice`` installs.
+    Return the interpreter in the setting (unchecked), else this interpreter if it has Piper. Else look in
+    ``.venvs/piper`` beside this environment, then in ``piper`` in the user's data folder.
     """
     if setting is not None:
         return str(setting.expanduser())

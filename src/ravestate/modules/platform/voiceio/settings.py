@@ -28,8 +28,8 @@ class Settings(rs.Settings):
     model_config = ConfigDict(protected_namespaces=())  # allow the field `model`
 
     source: NameOrPath = "default"
-    """The microphone: ``default``, a device's name, or a WAV file. A platform's line in ``rawio.sound`` takes
-    priority."""
+    """The microphone: ``default``, a device's name, or a sound file (WAV, OGG, MP3, ...). A platform's line in
+    ``rawio.sound`` takes priority."""
     sink: NameOrPath = "default"
     """The loudspeaker: ``default``, a device's name, or a WAV file; empty to drop the sound."""
     half_duplex: bool = False
@@ -52,9 +52,10 @@ class Settings(rs.Settings):
     """The seconds between two captions (``rawio.hearing``) while the user speaks; 0 for no captions."""
 
     voice: NameOrPath = ""
-    """``espeak``, ``espeak:en-gb``, ``piper``, or a Piper voice's name or file; by default Piper if it is set up."""
+    """``espeak``, ``espeak:en-gb``, ``piper``, or a Piper voice's name or file; by default Piper if it is set up, else espeak."""
     piper: Path | None = None
-    """The Python interpreter of Piper's environment; by default the one that ``make voice`` installs."""
+    """The Python interpreter of Piper's environment. By default, this interpreter if it has Piper, else the one that
+    ``make voice`` installs."""
 
     speech: Share = 0.5
     """The minimum probability of speech for a sound to count as speech."""
@@ -75,4 +76,4 @@ class Settings(rs.Settings):
     filler_after: Seconds = 0.8
     """The agent says a filler after this many seconds without an answer; 0 for no fillers."""
     fillers: tuple[str, ...] = ("Hm.", "Well.", "Let me see.")
-    """The fillers."""
+    """The fillers; the agent chooses one of them at random."""

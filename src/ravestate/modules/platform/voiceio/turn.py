@@ -101,7 +101,7 @@ def wanted_silence(
 
 
 def completeness(text: str, language: str = "en") -> Literal["open", "doubtful", "complete"]:
-    """Judge by the last word whether a text is complete: open after an article, doubtful after a word such as *that*.
+    """Judge by its last word and mark whether a text is complete: open after *the* or a comma, doubtful after *that*.
 
     Example:
         >>> completeness("I would like to go to the"), completeness("I think that"), completeness("Go home.")
@@ -129,7 +129,7 @@ def _may_go_on(text: str, last: Mapping[str, float], language: str) -> bool:
 
 
 def is_back_channel(text: str, language: str = "en") -> bool:
-    """Return whether the words show merely that the user is listening or laughing.
+    """Return whether the words (at most six) show merely that the user is listening or laughing.
 
     Example:
         >>> is_back_channel("Yeah, I see."), is_back_channel("Ha ha ha!"), is_back_channel("Yes, but why?")

@@ -27,7 +27,7 @@ def transcribe(sound: bytes | Path, settings: Settings | None = None) -> Utteran
         The utterance. Its times count from the beginning of the recording. Its text is empty if nobody speaks.
 
     Raises:
-        PlatformError: The recording cannot be read, or a package or a model is missing.
+        PlatformError: The recording cannot be read, a package or a model is missing, or the recogniser fails.
     """
     from .activity import speech_spans
     from .sound import decode
@@ -45,7 +45,7 @@ def synthesise(text: str, settings: Settings | None = None) -> bytes:
     """Return a text as a voice note: an OGG file with Opus. The call blocks, so make it in a thread.
 
     Raises:
-        PlatformError: A program or a voice is missing, or the text has no words.
+        PlatformError: A program or a voice is missing, synthesis fails, or the text has no words.
     """
     from .sound import encode_ogg
 
@@ -56,7 +56,7 @@ def speak(text: str, settings: Settings | None = None) -> bytes:
     """Return a text as PCM (mono, 16 bits, `OUT_RATE`). The call blocks.
 
     Raises:
-        PlatformError: A program or a voice is missing, or the text has no words.
+        PlatformError: A program or a voice is missing, synthesis fails, or the text has no words.
     """
     from ravestate.errors import PlatformError
 

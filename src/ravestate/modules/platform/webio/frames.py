@@ -18,7 +18,7 @@ class Hello:
 
     Attributes:
         v: The version of the protocol.
-        session: The id of the conversation to resume. Without it, a new conversation begins.
+        session: The id of the conversation to resume. Without it, or if that conversation is over, a new one begins.
         last: The number of the last message that the client has; 0 if it has none.
         token: The server's token, if the server asks for one.
         name: The visitor's name, if it is known.
@@ -129,7 +129,7 @@ class Welcome:
         v: The version of the protocol.
         session: The conversation's secret id. A client sends it to resume the conversation.
         resumed: Whether the server has resumed the conversation that the client asked for.
-        first: The number of the oldest message that the server keeps.
+        first: The number of the oldest message that the server keeps; 1 before the first message.
         agent: The agent's name.
         inside: The address of the board (Raveboard) for this conversation, relative to the page; None if there is none.
         last: The number of the newest message; 0 before the first message.
@@ -269,7 +269,7 @@ class Look:
     """The agent wants a picture from this window's camera.
 
     Attributes:
-        n: The number of this request. The server ignores a `Picture` with an earlier number.
+        n: The number of this request. The server ignores a `Picture` with another number.
     """
 
     n: Number

@@ -74,7 +74,7 @@ class History:
         return list(itertools.islice(said, most))
 
     def since(self, number: int) -> Iterator[Message]:
-        """Yield the messages with numbers greater than `number`, in order, even those added during the iteration."""
+        """Yield the kept messages with numbers greater than `number`, in order, even those added during the iteration."""
         while number < self.last:
             number = max(number + 1, self.first)
             yield self._messages[number - self.first]

@@ -22,7 +22,8 @@ MOST_HEARD = 5 * rawio.IN_RATE * SAMPLE
 """At most this many bytes (5 s) of the visitor's sound wait for the agent. The line drops older sound."""
 
 TRAIL = bytes(2 * rawio.IN_RATE * SAMPLE)
-"""2 s of silence. The agent hears it when the microphone goes off, so that the visitor's utterance ends."""
+"""2 s of silence. The agent hears it when the microphone goes off or loses the line, so that the visitor's utterance
+ends."""
 
 CHUNK = rawio.OUT_RATE // 5 * SAMPLE
 """The maximum number of bytes of the agent's sound in one frame (0.2 s)."""
@@ -32,7 +33,8 @@ AHEAD = rawio.OUT_RATE
 because `stop` would drop it."""
 
 BETWEEN = 0.2
-"""After a report of the browser window, `played` assumes for this many seconds that the sound keeps playing."""
+"""After a report of progress from the browser window, `played` assumes for this many seconds that the sound keeps
+playing."""
 
 STALL = 5.0
 """A browser window loses the line if it plays none of its sound for this many seconds."""
@@ -59,7 +61,7 @@ def hears(policy: Policy) -> bool:
 
 
 def uses(policy: Policy, slot: Slot[Any]) -> bool:
-    """Return whether a rule of a policy uses a slot."""
+    """Return whether a rule of a policy reads a slot, or reacts to a change of it."""
     if any(slot in rule.reads for rule in policy.rules.values()):
         return True
     return any(slot.changed in clause.signals for clause in policy.clause_plans.values())

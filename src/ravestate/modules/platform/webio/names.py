@@ -32,7 +32,8 @@ class Settings(rs.Settings):
     token: pydantic.SecretStr | None = None
     """The secret that each visitor's link needs at its end: ``#token=...``. Set it as ``RAVESTATE_WEBIO_TOKEN``."""
     origins: tuple[Annotated[str, pydantic.AfterValidator(_origin)], ...] = ()
-    """The sites that may embed the page, e.g. ``https://museum.example``. Behind a proxy, add the page's own site."""
+    """The sites that may embed the page and connect to it, e.g. ``https://museum.example``. Behind a proxy, add the page's
+    own site."""
     title: str | None = None
     """The agent's name on the page; by default, the value of ``interloc.agent``."""
     suggestions: tuple[Annotated[str, pydantic.Field(min_length=1, max_length=80)], ...] = pydantic.Field(

@@ -34,9 +34,9 @@ async def refuse(socket: WebSocket, answer: Response) -> None:
 
 
 class Pages:
-    """An ASGI application that serves `LOGO` and the files of a folder, and ``index.html`` for the folder itself.
+    """An ASGI application that serves `LOGO`, the files of a folder, and ``index.html`` for the folder itself.
 
-    It reads the files once, when it is created.
+    It reads the files once, when it is created. It leaves out files whose suffixes are not in `KINDS`.
     """
 
     def __init__(self, folder: Path) -> None:

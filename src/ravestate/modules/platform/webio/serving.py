@@ -23,7 +23,8 @@ async def serve(agent: Agent) -> None:
     """Serve an agent's page with the settings of ``webio`` until the task is cancelled.
 
     Raises:
-        PlatformError: The port is in use, a token is missing, or starlette, uvicorn or websockets is not installed.
+        PlatformError: The server cannot listen on the address, or a token is missing. Or starlette, uvicorn or websockets is
+            not installed, or the agent has `conio`.
     """
     await asyncio.to_thread(_load)  # the imports take a quarter of a second, and would hold up other tasks
     from .server import Server

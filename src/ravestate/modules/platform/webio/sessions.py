@@ -80,7 +80,7 @@ class Sessions:
             timer.cancel()
 
     def exit(self, session: Session, onlooker: Onlooker) -> None:
-        """Remove an onlooker from a conversation. If no onlooker is left, the conversation ends in `keep` seconds."""
+        """Remove an onlooker from a conversation. If none is left, it ends in `keep` seconds, unless one comes back."""
         session.onlookers.discard(onlooker)
         if not session.onlookers and session in self._tasks:
             self._abandon(session)

@@ -118,10 +118,10 @@ def load(config: dict[str, Any]) -> Any:
 
 
 def without_repetition(words: list[str], *, at_limit: bool) -> int:
-    """Return how many words come before the repetition of a phrase. If nothing is repeated, count all words.
+    """Return the number of words to keep: if the words are one phrase again and again, those of the first phrase.
 
-    `at_limit` is whether the model wrote as many tokens as it may. If so, even a short or partial repetition ends the
-    count.
+    Otherwise, keep all words. `at_limit` is whether the model wrote as many tokens as it may. If so, even a short or partial repetition
+    counts.
     """
     for length in range(1 if at_limit else PHRASE, len(words)):
         if all(words[at] == words[at - length] for at in range(length, len(words))):
