@@ -5,8 +5,8 @@ RavestateError
 ├── DeclarationError(ValueError)      a designer's mistake, found before running
 ├── DeclarationErrors(ExceptionGroup) all such mistakes together
 ├── UsageError                        a user's mistake, e.g. an unknown module; commands end with exit code 2
-├── RuleError(RuntimeError)           a rule failed, or broke its declaration
-│   ├── UndeclaredError(LookupError)  a rule touched a slot or a signal that it does not declare
+├── RuleError(RuntimeError)           a rule failed or broke its declaration, or a value does not fit its slot
+│   ├── UndeclaredError(LookupError)  a rule used an undeclared slot or signal, or other code used an unknown one
 │   ├── RuleTimeout(TimeoutError)     a run took longer than the rule's ``timeout``
 │   └── RunEnded                      a rule acted after its run was over
 ├── EngineError(RuntimeError)         a call that the context cannot accept now, or a failure of the engine
@@ -55,11 +55,14 @@ class UsageError(RavestateError):
 
 
 class RuleError(RavestateError, RuntimeError):
-    """A rule failed, returned an invalid value, or broke its declaration."""
+    """A rule failed, returned an invalid value, or broke its declaration; or a written value does not fit its slot."""
 
 
 class UndeclaredError(RuleError, LookupError):
-    """A rule read, wrote or emitted a slot or a signal that its declaration does not name (law L3)."""
+    """A rule used a slot or a signal that its declaration does not name (law L3).
+
+    Code outside the rules gets this error if it uses a slot or a signal that the policy does not have.
+    """
 
     def __str__(self) -> str:
         return str(self.args[0]) if self.args else ""

@@ -60,8 +60,8 @@ class Settings(pydantic.BaseModel, metaclass=_SettingsMeta):
     - the agent file
     - the defaults
 
-    In an agent file, a relative path in a field of the type `pathlib.Path` is relative to the folder of the file. In all
-    other sources, it is relative to the working folder.
+    In an agent file, a relative path in a field for paths is relative to the folder of the file. In all other sources,
+    it is relative to the working folder.
 
     Example:
         >>> import ravestate as rs
@@ -84,15 +84,15 @@ def load_settings(
     given: Mapping[str, Mapping[str, Any] | pydantic.BaseModel] | None = None,
     environment: Mapping[str, str] | None = None,
 ) -> dict[str, Any]:
-    """Return the settings of each module, by the module's name.
+    """Return the settings of each module that has settings, by the module's name.
 
     Values in `given` override values in the environment, and these override the defaults. For each module, `given` has
     values of fields, or an instance of the module's settings class. `environment` has environment variables; by
     default, those of the process.
 
     Raises:
-        DeclarationErrors: Modules or fields are unknown, or values have wrong types. The group has one error for each
-            mistake.
+        DeclarationErrors: Modules or fields are unknown, or values are missing or invalid. The group has one error for
+            each mistake.
     """
     given = given or {}
     variables = os.environ if environment is None else environment

@@ -34,7 +34,7 @@ RESPELT = tuple(f"tag:yaml.org,2002:{kind}" for kind in ("bool", "int", "float",
 
 
 def load_yaml(text: str, name: str) -> Any:
-    """Return the value of a YAML text: mappings, lists, texts, numbers and dates; `None` if it is empty.
+    """Return the value of a YAML text, such as a mapping, a list, a text or a number; `None` if the text is empty.
 
     If the text is not valid, repeats a key, nests too deeply, or stands for too many values, raise a
     `DeclarationError`. Its message begins with `name`, the name of the file.

@@ -240,7 +240,11 @@ export interface Passed {
   run?: number;
 }
 
-/** The rival `rule` is under pressure, because `by` waits for it; its patience ends at `until` (L16). */
+/**
+ * The rival `rule` is under pressure: the rule `by` waits for it (L16).
+ *
+ * The rival lacks the signals `lacks`. Its patience ends at `until`.
+ */
 export interface Pressed {
   kind: "pressed";
   time: number;
@@ -295,7 +299,11 @@ export interface Set {
   run: number;
 }
 
-/** The run of the activation `run` has ended; `outcome` is an `Outcome` (L18). */
+/**
+ * The run of the activation `run` has ended; `outcome` is an `Outcome` (L18).
+ *
+ * `fired` says whether the run consumed its spikes.
+ */
 export interface Settled {
   kind: "settled";
   time: number;
@@ -380,7 +388,7 @@ export type TraceRecord =
   | Gap;
 
 /**
- * A ready activation waits for the rules `for_`: rivals, or runs that hold a slot (L15).
+ * A ready activation waits for the rules `for_`: those of rivals, and those of runs that have taken a slot (L15).
  *
  * The wait ends at `until` at the latest, because the patience of the rivals ends then. Without such a limit, `until` is None.
  */
@@ -395,7 +403,7 @@ export interface Waits {
 
 /** A value as text. */
 export interface Rendered {
-  /** The value as JSON, or its `repr`. */
+  /** The value as JSON, or its `repr`; for an `Entry`, its key and item. */
   text: string;
   /** Whether the text is the whole value as JSON. A user may then edit the text and write it back. */
   json?: boolean;
@@ -406,14 +414,14 @@ export interface Rendered {
 /** An activation: the spikes that it holds, the signals that it lacks, and the rules that it waits for. */
 export interface ActivationState {
   id: number;
-  /** `gathering`, `ripening`, `gated`, `ready`, `waiting`, `running` or `cancelling`. */
+  /** `gathering`, `ripening` (a spike is too young), `gated` (a slot predicate is false), `ready`, `waiting`, `running` or `cancelling`. */
   state: string;
   condition: string;
   /** The signal and the age (seconds) of each spike that the activation holds. */
   holds: [string, number][];
   /** The signals of the spikes that it lacks. */
   lacks: string[];
-  /** The rules that it waits for, and by how many nats each is ahead. This lead is 0 for a taken slot, a tie, or utilities of 0. */
+  /** The rules that it waits for, and by how many nats each is ahead. This lead is 0 for a tie, for utilities of 0, and for a rule that has taken a slot without being ahead. */
   waits_for: [string, number][];
   /** The time (seconds) by which the activation runs, times out or gives a spike up; None without a limit. */
   until: number | null;
@@ -551,7 +559,7 @@ export interface Alive {
   rule: string;
 }
 
-/** The values of all slots, and the live activations. */
+/** The values of all slots, and the live activations. For a recording: the slots' last values in the trace. */
 export interface State {
   type: "state";
   slots: Record<string, Rendered>;

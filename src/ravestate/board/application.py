@@ -56,7 +56,7 @@ def routes(
     The board is for the agent's developers: anybody with access to the page can inspect and change every conversation.
     Sites that may embed the chat may neither embed the board nor connect to it. Without `recorders`, recording
     starts when a board opens. If there is a `recording`, a board opens with it, unless the board's address chooses a
-    conversation. Without a `title`, the board shows the name that the agent gives itself.
+    conversation; and ``/`` leads to the board. Without a `title`, the board shows the name that the agent gives itself.
     """
     known = Recorders() if recorders is None else recorders
     recordings = Recordings(recording)

@@ -31,7 +31,8 @@ if TYPE_CHECKING:
     from ravestate.modules.platform.webio.session import Session
     from ravestate.modules.platform.webio.sessions import Sessions
 
-FRAME = 0.05  # the minimum number of seconds between two frames (messages) of records
+# Seconds between two frames (messages) of records of a running conversation. An answer brings the next frame forward.
+FRAME = 0.05
 
 SHARE = 0.015
 """The share of the event loop's time that one inspector may use. After a slow frame, the inspector waits longer, to
@@ -190,7 +191,7 @@ class Inspector:
         self._channel.reply(protocol.serialise(frame))
 
     async def _write(self, source: Source, session: Session | None, seen: int, title: str) -> None:
-        """Send answers to the page immediately, and new records at most about twenty times per second."""
+        """Send answers to the page immediately. Send new records of a conversation about twenty times per second."""
         idle = IdleShare()
         stopped: bool | None = None  # whether the last frame said that the clock was stopped
         listed: protocol.Conversations | None = None

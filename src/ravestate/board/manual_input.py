@@ -17,7 +17,7 @@ SAMPLES: tuple[Any, ...] = (True, 0, 0.5, "", [], {})  # one value of each JSON 
 def check_value(slot: Slot[Any], value: object, holds: object) -> None:
     """Raise a `RavestateError` if a user may not write a value to a slot. The write itself checks more (`Slot.check`).
 
-    If the slot declares no type, its current value, `holds`, must be one that JSON can express.
+    If the slot declares no type that can be checked, its current value, `holds`, must be one that JSON can express.
     """
     if isinstance(slot, Flag) and not isinstance(value, bool):
         raise RavestateError(f"{slot.name} is a flag: write true or false, not {value!r}")

@@ -171,7 +171,7 @@ class Alive(ActivationState):
 
 @dataclass(frozen=True)
 class State:
-    """The values of all slots, and the live activations."""
+    """The values of all slots, and the live activations. For a recording: the slots' last values in the trace."""
 
     slots: dict[str, Rendered]
     activations: list[Alive]

@@ -16,7 +16,7 @@ from typing import cast
 from ravestate.board.repr_chunks import repr_chunks
 from ravestate.declare.slot import Entry
 
-DEEPEST = 6  # the maximum depth of nested containers in JSON; a deeper value is shown by its ``repr``
+DEEPEST = 6  # the maximum depth of a container in JSON (the outermost has depth 0); deeper values appear as a ``repr``
 TRACEBACK = 8000  # the maximum number of characters of a traceback; a longer traceback keeps only its end
 
 
@@ -25,7 +25,7 @@ class Rendered:
     """A value as text.
 
     Attributes:
-        text: The value as JSON, or its ``repr``.
+        text: The value as JSON, or its ``repr``; for an `Entry`, its key and item.
         json: Whether the text is the whole value as JSON. A user may then edit the text and write it back.
         cut: Whether the text is only the beginning of a longer text.
     """
@@ -135,7 +135,7 @@ def _repr(value: object, most: int) -> Rendered:
 
 
 def well_formed(text: str) -> str:
-    """Return a text without lone surrogates, which UTF-8 cannot encode."""
+    """Return a text with a question mark for each lone surrogate, which UTF-8 cannot encode."""
     return text if text.isascii() else text.encode("utf-8", "replace").decode("utf-8")
 
 

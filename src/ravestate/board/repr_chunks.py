@@ -29,10 +29,10 @@ _Items = Iterable[tuple[Iterable[str], object]]  # the items of a container, eac
 
 
 def repr_chunks(value: object, around: tuple[int, ...] = ()) -> Iterator[str]:
-    """Yield the ``repr`` of a value: in many chunks for built-in containers and dataclasses, in one for other values.
+    """Yield the ``repr`` of a value: in many chunks for containers and dataclasses, in one for other values.
 
-    Long and deep values are cut. If a value contains itself, ``...`` stands for the inner value: `around` has the `id`
-    of each container around the value. Containers other than lists, tuples, sets and dicts show their class, as in
+    Long texts and deep values are cut. If a value contains itself, ``...`` stands for the inner value: `around` has the
+    `id` of each container around the value. Containers other than lists, tuples, sets and dicts show their class, as in
     ``deque([1, 2])``. A subclass of a built-in container shows its items; the subclass's methods are not called.
     """
     made_by: Any = type(value).__repr__

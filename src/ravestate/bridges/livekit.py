@@ -56,7 +56,7 @@ class RavestateAgent(Agent):
         self._contexts = contexts_of(agent)
         self._conversation: Conversation | None = None
         self._watching: asyncio.Task[None] | None = None
-        self._known: set[str] = set()  # the ids of messages of the user that the agent has heard
+        self._known: set[str] = set()  # the ids of messages that the agent has heard, or that are older than the agent
 
     async def on_enter(self) -> None:
         """Start the agent."""

@@ -65,7 +65,7 @@ class RavestateProcessor(FrameProcessor):
         self._guessed = False  # whether Pipecat has only guessed that the user's turn is over
 
     async def process_frame(self, frame: Frame, direction: FrameDirection) -> None:
-        """Tell the agent about a frame, and pass the frame on unless it is meant for a language model."""
+        """Tell the agent about a frame. Pass it on, except a `TranscriptionFrame` or an `LLMContextFrame`."""
         await super().process_frame(frame, direction)
         conversation = self._conversation
         match frame:
@@ -105,7 +105,7 @@ class RavestateProcessor(FrameProcessor):
         await self.push_frame(frame, direction)
 
     async def cleanup(self) -> None:
-        """Stop the agent, if a cancellation has ended the pipeline."""
+        """Stop the agent immediately, unless an `EndFrame` has stopped it already. Then end this processor's tasks."""
         await self._conversation.end(at_once=True)
         for task in self._tasks:
             await self.cancel_task(task)

@@ -30,7 +30,7 @@ AnyAgent = Context | Agent | Policy | Module | ModuleType | str | Path | Sequenc
 """
 
 LONGEST = 30.0  # `Conversation.end` waits at most this many seconds for an answer
-FAREWELL = 5.0  # the agent's farewell may take at most this many seconds
+FAREWELL = 5.0  # rules have this many seconds to react to the user's leaving, and then as many to react to the shutdown
 
 
 def contexts_of(agent: AnyAgent) -> Callable[[], Context]:

@@ -1,7 +1,7 @@
 """The command line: ``ravestate COMMAND ...``, one file for each command.
 
-Exit codes: 0 for success, 1 if the agent has faults or fails, 2 for wrong use, 130 after Ctrl-C. A user's mistake
-produces a message, never a traceback.
+Exit codes: 0 for success, 1 if the agent has faults or the command fails, 2 for wrong use, 130 after Ctrl-C. A user's
+mistake produces a message, never a traceback.
 """
 
 from __future__ import annotations
@@ -41,7 +41,10 @@ LAST_GRACE = 0.5
 
 
 def main(argv: Sequence[str] | None = None) -> int:
-    """Run the command line (by default with the arguments of the process), and return the exit code."""
+    """Run the command line (by default with the arguments of the process), and return the exit code.
+
+    After the help, the version or a wrong argument, argparse raises SystemExit instead.
+    """
     from ravestate import __version__, compiled
 
     parser = argparse.ArgumentParser(

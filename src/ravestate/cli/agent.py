@@ -40,7 +40,8 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
 def load_agent(options: argparse.Namespace, first: Iterable[str] = (), *, announce: bool = False) -> AgentSpec:
     """Return the agent that the parsed arguments describe. The modules `first` come before the agent's modules.
 
-    With `announce`, print which Python code the agent files run. Commands that only inspect an agent use this.
+    With `announce`, print which Python code the agent files run. Some commands that only inspect an agent use this.
+    Without ``--set`` and without other mistakes, the values of the settings are not checked here.
 
     Raises:
         UsageError: A module, file or setting is wrong. The message lists all mistakes of agent files and of ``--set``.

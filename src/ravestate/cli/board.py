@@ -76,7 +76,7 @@ async def _serve(made: Agent, beside: list[BaseRoute], inside: str, talks: bool,
 
 
 def _has_browser() -> bool:
-    """Return whether this session has a screen for a browser."""
+    """Return whether this session has a terminal, and a screen for a browser."""
     if not sys.stdout.isatty():
         return False
     return sys.platform in ("darwin", "win32") or bool(os.environ.get("DISPLAY") or os.environ.get("WAYLAND_DISPLAY"))

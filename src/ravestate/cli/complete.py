@@ -94,7 +94,8 @@ def _can_see() -> bool:
 def leave_out_absent(agent: AgentSpec, command: str) -> None:
     """Remove modules whose packages are not installed, and print how to install these packages and the sentence models.
 
-    A module stays if the user has set one of its settings.
+    Also remove the modules of the complete agent that require a removed one. A module stays if the user has set one of
+    its settings, or if another module needs it. The console stays, too, in its plain form.
     """
     _leave_out_absent(agent, command)
     needed = any("onnxruntime" in PACKAGES.get(module.name, ()) for module in with_required(agent.modules))
@@ -130,7 +131,8 @@ def _leave_out_absent(agent: AgentSpec, command: str) -> None:
 def choose_small_talk(agent: AgentSpec, command: str) -> str:
     """Choose the language model for small talk (`wildtalk`), print its name in one line, and set it in the settings.
 
-    If there is no language model, return a sentence that says how to get one; otherwise, return an empty text.
+    Do nothing if the settings name a backend, or forbid the search. If the search finds no language model, return a
+    sentence that says how to get one; otherwise, return an empty text.
     """
     if all(module.name != "wildtalk" for module in agent.modules):
         return ""

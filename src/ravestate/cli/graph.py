@@ -13,7 +13,8 @@ SUFFIXES = {".svg": "svg", ".dot": "dot", ".gv": "dot", ".mmd": "mermaid", ".mer
 """The ending of an output file's name → the format of the diagram."""
 
 LARGE = 40
-"""If an agent has more rules than this, each module becomes one box: else the text would be too small for a screen."""
+"""If an agent has more rules than this, by default each module becomes one box: else the text would be too small for a
+screen."""
 
 
 def add_arguments(parser: argparse.ArgumentParser) -> None:

@@ -29,7 +29,7 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
 
 
 def run(options: argparse.Namespace) -> int:
-    """Run the command; return 130 if the user interrupts a download."""
+    """Run the command; return 130 if the user interrupts a download, and 1 if the model to remove is not installed."""
     from ravestate.modules.skill.wildtalk import model_store
 
     if options.action == "list":

@@ -19,7 +19,7 @@ if TYPE_CHECKING:
     from ravestate.modules.meta.nlp.analysis import Analysis
 
 SHOWN = 5
-"""The maximum number of intents (kinds of utterance) in the table."""
+"""The maximum number of intents (kinds of utterance) in the output."""
 PATIENCE = 60.0
 """Wait this many seconds for a language model. The limit is high, because no user waits for an answer."""
 

@@ -13,7 +13,8 @@ from ravestate.yaml_text import load_yaml
 
 PARAMETERS = "ros__parameters"
 SIMULATED = "use_sim_time"
-"""Every node has this parameter, which says whether time is simulated. It is also a setting of `ros1` and `ros2`."""
+"""This parameter says whether time is simulated. In ROS 2, each node has its own; in ROS 1, all nodes share one. It is
+also a setting of `ros1` and `ros2`."""
 OTHERS = ("qos_overrides", "start_type_description_service")
 """ROS 2 gives every node parameters whose names begin with one of these words. They are not settings."""
 
@@ -21,7 +22,7 @@ Found = list[tuple[str, Any]]
 
 
 def from_file(path: Path, node: str, namespace: str) -> Found:
-    """Return the settings in a ROS 2 parameter file, each with its value.
+    """Return the settings that a ROS 2 parameter file has for a node or for all nodes, each with its value.
 
     Args:
         path: The file. A launch file names it with ``--params-file``.
@@ -50,9 +51,9 @@ def from_file(path: Path, node: str, namespace: str) -> Found:
 
 
 def from_server(node: str, namespace: str) -> Found:
-    """Return settings with their values: the private parameters of a node on the ROS 1 parameter server.
+    """Return settings with their values: a node's private parameters on the ROS 1 parameter server, and `SIMULATED`.
 
-    ``roslaunch`` writes these parameters to the server. Without a master, the result is empty.
+    ``roslaunch`` writes the private parameters to the server. Without a master, the result is empty.
     """
     uri = os.environ.get("ROS_MASTER_URI") or "http://localhost:11311"
     own = "/" + f"{namespace}/{node}".strip("/")

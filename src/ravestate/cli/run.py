@@ -26,7 +26,10 @@ def run(options: argparse.Namespace) -> int:
 
 
 def _transcript(chosen: AgentSpec) -> list[Module]:
-    """Return a list with a module that prints a spoken conversation; an empty list if another platform shows it."""
+    """Return a list with a module that prints a spoken conversation.
+
+    The list is empty if the agent does not use `voiceio`, or if another platform shows the conversation.
+    """
     modules = with_required(chosen.modules)
     names = {module.name for module in modules}
     if "voiceio" not in names or "conio" in names or any(module.serve is not None for module in modules):

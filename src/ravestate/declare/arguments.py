@@ -22,7 +22,7 @@ R = TypeVar("R")
 
 
 def keywords(*options: str) -> Callable[[Callable[P, R]], Callable[P, R]]:
-    """Return a decorator that makes a method refuse an unknown keyword; the message names the most similar known one.
+    """Return a decorator that makes a method refuse an unknown keyword; the message suggests a similar known one.
 
     `options` are keywords that the method accepts in addition to those in its signature.
     """
@@ -117,9 +117,10 @@ def number(value: object, what: str, where: str) -> Number:
 
 
 def several(values: Any, kind: type[T], what: str, where: str, home: str) -> tuple[T, ...]:
-    """Return one or more slots or signals as a tuple without duplicates; refuse values of another `kind`.
+    """Return slots or signals as a tuple without duplicates; refuse values of another `kind`.
 
-    `what`, `where` and `home` are as for `condition`.
+    `values` is one slot or signal, or an iterable of them, which may be empty. `what`, `where` and `home` are as for
+    `condition`.
     """
     if isinstance(values, kind):
         return (values,)

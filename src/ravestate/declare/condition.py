@@ -67,7 +67,7 @@ class Constraint(Condition):
         return replace(self, min_age_=_age(seconds, "min_age"))
 
     def max_age(self, seconds: Number | None) -> Constraint:
-        """Give up a spike when it is older than `seconds`. With ``None``, there is no limit. The default is 5 s.
+        """Give up a spike when its age reaches `seconds`. With ``None``, there is no limit. The default is 5 s.
 
         A rule that is ready, but still waits to run, keeps its spikes, whatever their age (L14).
         """
@@ -85,10 +85,11 @@ class Constraint(Condition):
 
         Args:
             predicate: A plain, fast function. The event loop calls it for each spike that might trigger the rule. If
-                the function raises an exception, the predicate counts as false.
+                the function raises an exception, the predicate counts as false. Its first exception also raises
+                ``rs.error``.
 
         Raises:
-            DeclarationError: The predicate is not a function, or it is asynchronous.
+            DeclarationError: The predicate is not callable, or it is asynchronous or a generator.
 
         Example:
             >>> import ravestate as rs
@@ -138,7 +139,7 @@ class AnyOf(Compound):
 
 
 def checked_predicate(predicate: object, what: str, of: str) -> Predicate:
-    """Return `predicate` if it is a plain function; refuse any other value.
+    """Return `predicate` if it is callable, and neither asynchronous nor a generator; refuse any other value.
 
     Calling an asynchronous function or a generator only creates an object, and that object always counts as true. The
     message uses `what`, the method that got the predicate, and `of`, the predicate's argument: ``payload`` or

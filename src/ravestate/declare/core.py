@@ -24,10 +24,16 @@ shutdown = core.signal("shutdown", input=True)
 """Raised once, when a context is about to end. The context waits a few seconds for rules that react to this signal."""
 
 error = core.signal("error", payload=RuleFailure, input=True)
-"""Raised when a rule (L18) or a predicate of its condition fails."""
+"""Raised when a rule (L18) or a predicate of its condition fails.
+
+If a run to which this signal has led fails, the signal is not raised again. A predicate raises it at most once.
+"""
 
 activity = core.flag("activity", input=True, keep="latest")
-"""True while some activation of a foreground rule holds a spike or runs."""
+"""True while some activation of a foreground rule holds a spike or runs.
+
+An activation counts neither for this flag nor for `pressure` if its condition uses one of these two flags.
+"""
 
 pressure = core.flag("pressure", input=True, keep="latest")
-"""True while some ready activation has to wait before it may run."""
+"""True while some ready activation waits because of other rules."""

@@ -33,7 +33,8 @@ class Module:
     """A named collection of signals, slots and rules.
 
     Args:
-        name: Letters, digits, ``_`` and ``-``. The names of the module's signals, slots and rules begin with it.
+        name: Letters, digits, ``_`` and ``-``, without a digit at the beginning. The names of the module's signals,
+            slots and rules begin with it.
         requires: Modules whose signals and slots this module uses: `Module` values, or Python modules that contain a
             `Module` (``from ravestate.modules import rawio``).
         settings: A subclass of ``rs.Settings`` with the values that a user may configure.
@@ -98,7 +99,8 @@ class Module:
 
         Args:
             name: The signal's name within the module.
-            payload: The type of the payload; by default, the signal has no payload.
+            payload: The type of the payload; by default, the signal has no payload. Raising the signal does not check
+                the type.
             options: See `SignalOptions`.
 
         Raises:
@@ -123,7 +125,8 @@ class Module:
             name: The slot's name within the module.
             default: The slot's value before the first write. Each context gets its own copy.
             type: The value's type, e.g. ``str`` or ``str | Path``. Writing a value of another type fails; None is
-                allowed if it is the default. Types that ``isinstance`` cannot check are not enforced.
+                allowed if it is the default. A ``float`` slot also takes integers. Types that ``isinstance`` cannot
+                check are not enforced.
             options: See `SlotOptions`.
 
         Raises:
@@ -136,7 +139,7 @@ class Module:
 
     @keywords(*SlotOptions.__annotations__)
     def flag(self, name: str, default: bool = False, **options: Unpack[SlotOptions]) -> Flag:
-        """Declare a boolean slot with the signals ``.changed``, ``.true``, ``.false``. Arguments: see `slot`."""
+        """Declare a boolean slot with the signals ``.changed``, ``.true``, ``.false``. Its arguments: see `slot`."""
         flag = Flag(self._qualified("flag", name, options), default, origin=place_of_call(), **options)
         self.slots.append(flag)
         return flag
@@ -179,24 +182,27 @@ class Module:
         An ``async def`` runs on the event loop; a plain function runs in a thread.
 
         Args:
-            when: The condition: signals, combined with ``&`` and ``|``.
+            when: The condition: signals and predicates on slots, combined with ``&`` and ``|``.
             reads: The slot or slots whose values the function may read.
             writes: The slot or slots that the function may write and read. Rules that write the same slot for the same
                 cause exclude each other (L10).
             emits: The signal or signals that the function may emit.
             weight: A factor above 0 that multiplies the utility (L9).
             cooldown: When the rule has fired, its utility takes this many seconds to recover from 0 (L9). A run that
-                resigned does not count.
-            patience: While this rule lacks an input or a spike of another causal group, other rules wait for this rule,
-                at most this many seconds (L16). The default is the context's patience.
+                resigned, or failed before its first write, does not count.
+            patience: If this rule lacks an input or a spike of another causal group, other rules wait for it, at most
+                this many seconds (L16). Only rules of less utility that write the same slot wait. The default is the
+                context's patience.
             until: A condition that interrupts a run when new spikes meet it (L21).
             timeout: The maximum duration of a run in seconds, after which it fails (L18); no limit by default.
             detached: Whether the rule's effects begin new causal groups (L19).
-            background: If true, the rule never makes ``rs.activity`` true (L22).
+            background: If true, the rule never makes ``rs.activity`` true (L22), and `Context.quiet` does not wait for
+                it.
             name: The rule's name within the module; by default the function's name.
 
         Raises:
-            DeclarationError: An argument has the wrong type. ``rs.compile`` reports numbers out of range.
+            DeclarationError: An argument has the wrong type, the name is invalid, or the function cannot be a rule's
+                function. ``rs.compile`` reports numbers out of range.
         """
         origin = place_of_call()
 

@@ -21,8 +21,8 @@ class SignalOptions(TypedDict, total=False):
     """The options of a signal. A slot gives its options to each of its signals.
 
     Attributes:
-        input: Whether code outside the rules may raise the signal even if a rule raises it too (L8). A signal that no
-            rule raises is always an input.
+        input: Whether the signal is an input, although a rule raises it too: the rules expect it from outside at any
+            time (L8). A signal that no rule raises is always an input.
         keep: ``"all"`` or ``"latest"``. With ``"latest"``, a new spike withdraws the signal's older spikes (L20).
         limit: The maximum number of live spikes, 100,000 by default. A further spike drops the oldest spike (L23).
     """

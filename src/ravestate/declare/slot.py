@@ -86,10 +86,11 @@ class Slot(Generic[T]):
     def holds(self, predicate: Predicate) -> Holds:
         """Return a condition: a rule starts only while ``predicate(value)`` is true.
 
-        The predicate is a plain, fast function of the slot's value. It adds ln 2 to the rule's utility (L9).
+        Such a condition triggers no rule, so combine it with a signal by ``&``. The predicate is a plain, fast function
+        of the slot's value. It adds ln 2 to the rule's utility (L9).
 
         Raises:
-            DeclarationError: The predicate is not a function, or it is asynchronous.
+            DeclarationError: The predicate is not callable, or it is asynchronous or a generator.
         """
         return Holds(self, checked_predicate(predicate, f"{self.name}.holds", "value"))
 

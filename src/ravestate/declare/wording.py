@@ -20,7 +20,7 @@ def spelt(name: str, home: str = "") -> str:
 
 
 def place_of_call() -> str:
-    """Return the place of the nearest caller outside this folder, as ``file:line``."""
+    """Return the place of the nearest caller outside this folder, or in ``core.py``, as ``file:line``."""
     frame = sys._getframe(1)  # pyright: ignore[reportPrivateUsage]  # messages show the line of the mistake
     while frame.f_back is not None and frame.f_code.co_filename.startswith(HERE):
         if frame.f_code.co_filename == CORE:
@@ -30,7 +30,7 @@ def place_of_call() -> str:
 
 
 def shown(value: object) -> str:
-    """Return the `repr` of a value; if the `repr` fails, return the name of its type."""
+    """Return the `repr` of a value; if the `repr` fails, return a text with the name of its type."""
     try:
         return repr(value)
     except Exception:  # the value's own `__repr__` may raise anything, and the message must still appear
@@ -55,11 +55,11 @@ def short(value: object, length: int = LENGTH) -> str:
     return cut(shown(value), length)
 
 
-SHOWN = 8  # the maximum number of names that a list shows
+SHOWN = 8  # the number of names that a long list shows
 
 
 def few(names: Iterable[str]) -> str:
-    """Join distinct names with commas; after the first eight, say how many more there are."""
+    """Join distinct names with commas. If there are more than nine, show eight, and say how many more there are."""
     found = list(dict.fromkeys(names))
     more = len(found) - SHOWN
     if more <= 1:  # one more name is as short as "and 1 more"

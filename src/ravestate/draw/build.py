@@ -1,9 +1,9 @@
 """Building a diagram from declared rules.
 
-The diagram shows a slot or a signal only if a rule uses it. It shows a signal of a slot only if a rule's condition
-names this signal. Conditions are in disjunctive normal form, because each run of a rule is for one clause (law L5). If
-a clause has several constraints, their lines meet in a conjunction node. If a rule has several clauses, their lines
-meet in a disjunction node.
+The diagram shows a slot or a signal only if a rule uses it. It shows a signal of a slot only if a rule names this
+signal itself, usually in its condition. Conditions are in disjunctive normal form, because each run of a rule is for
+one clause (law L5). If a clause has several constraints, their lines meet in a conjunction node. If a rule has several
+clauses, their lines meet in a disjunction node.
 """
 
 from __future__ import annotations

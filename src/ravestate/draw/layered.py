@@ -1,9 +1,9 @@
 """A proper layered graph: each segment joins two neighbouring layers.
 
 Vertices are the nodes of the diagram, the labels of its edges, and dummies (points where a long edge passes a layer). A
-line begins and ends at a port (a point on a vertex). Edges of one kind share one port on each side of a node. Long
-edges that begin (or end) at one port share their dummies, too. So a node with many edges has one line with branches (a
-hyperedge) instead of many parallel lines.
+line begins and ends at a port (a point on a vertex). Edges of one kind and direction share one port on each side of a
+node. Long edges that begin (or end) at one port share their dummies, too. So a node with many edges has one line with
+branches (a hyperedge) instead of many parallel lines.
 """
 
 from __future__ import annotations

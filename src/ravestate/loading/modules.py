@@ -23,7 +23,8 @@ def load_module(name: str, folder: Path = Path()) -> Module:
     """Return a module by its built-in name, entry point, dotted path or file; a file is relative to `folder`.
 
     Examples of names are ``rawio``, the entry point of an installed package, ``pkg.mod``, ``pkg.mod:module`` and
-    ``./hello.py``. If there is no such module, or importing it fails, raise a `UsageError`.
+    ``./hello.py``. If there is no such module, or importing it fails, raise a `UsageError`. But if the import itself
+    raises a `RavestateError`, for instance about a wrong declaration, pass this error on.
     """
     if name.endswith(".py"):
         return _from_file(name, (folder / name).resolve())
@@ -87,7 +88,8 @@ def _from_file(name: str, path: Path) -> Module:
 def _loading(failure: str) -> Generator[None]:
     """If loading a user's module raises an exception, raise a `UsageError` whose message begins with `failure`.
 
-    ``sys.exit`` counts as such an exception, because it would end the command without a message.
+    A `RavestateError` already has a good message, so it passes unchanged, and so does KeyboardInterrupt. ``sys.exit``
+    counts as an exception, because it would end the command without a message.
     """
     try:
         yield

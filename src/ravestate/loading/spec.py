@@ -54,7 +54,10 @@ class AgentSpec:
 
     @classmethod
     def from_file(cls, path: Path) -> AgentSpec:
-        """Read an agent file and load its modules, or raise a `UsageError` that lists all mistakes."""
+        """Read an agent file and load its modules, or raise a `UsageError` that lists all mistakes.
+
+        If only values of settings are wrong, raise nothing: see `check`.
+        """
         spec = cls()
         spec.load(spec.read(path))
         spec.check()

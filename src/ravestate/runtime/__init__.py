@@ -1,4 +1,4 @@
-"""The asyncio shell around the engine: the only place with a loop, a thread or a clock.
+"""The asyncio shell around the engine, which itself has no loop, thread or clock.
 
 Comments cite the laws of the automaton by number, such as law L18: see ``docs/explanation/processing-model.md``.
 """

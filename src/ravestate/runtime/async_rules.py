@@ -18,8 +18,8 @@ if TYPE_CHECKING:
 GRACE = 5.0  # a cancelled rule has this many seconds to clean up; after that, its run counts as ended
 
 CLEANING = 10
-"""Cancelled rules have this many turns of the event loop for their last writes. Meanwhile, no effect is performed; for
-instance, no rule starts.
+"""Cancelled rules have up to this many turns of the event loop for their last writes. Meanwhile, no effect is
+performed; for instance, no rule starts.
 
 If several rules are cancelled, the turns count from the first cancellation.
 """

@@ -15,8 +15,8 @@ except ImportError:  # Windows
     resource = None
 
 BLOCKING: Final = 0.1
-"""If one step of an async rule (see `StepTimer`) takes longer than this (seconds), a warning names the rule. During a
-step, nothing else on the loop runs."""
+"""If one step of an async rule (see `StepTimer`) computes or sleeps for longer than this (seconds), a warning names the
+rule. During a step, nothing else on the loop runs."""
 
 FRESH: Final = 0.01  # steps that begin within this many seconds share one reading of the thread's CPU time
 

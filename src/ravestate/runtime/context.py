@@ -36,13 +36,16 @@ TRACE_LIMIT = 100_000  # the maximum number of records in a context's trace
 class Context:
     """A running agent: ``async with rs.Context(module, ...) as context``.
 
+    Before it has started, most methods raise an `EngineError`.
+
     Args:
         modules: Modules to compile, or one compiled `Policy` to share.
         settings: Name of a module → the module's settings. They override settings from the environment.
         seed: The seed of all random choices that rules make through ``ctx.random``; a new seed in each run by default.
-        patience: The seconds for which other rules wait for a rule that lacks an input. Then that rule gives up its
-            spikes (law L16). A rule may set its own patience.
-        trace: True to keep records of all events, for ``trace`` and ``explain``; or a function to call with each record.
+        patience: The seconds for which other rules wait for a rule that lacks an input or a spike of another causal
+            group. Then that rule gives up its spikes (law L16). A rule may set its own patience.
+        trace: True to keep the latest 100,000 records of events, for ``trace`` and ``explain``; or a function to call
+            with each record.
         journal: A function, e.g. a `Journal`, to call with each event and its time (seconds). Each time the context
             takes the engine's effects, it calls the function with a `Taken` instead of an event.
 
@@ -127,9 +130,10 @@ class Context:
     async def stop(self, grace: float = 5.0) -> None:
         """End the context in order.
 
-        The context raises ``rs.shutdown``. Rules that start from then on have `grace` seconds to finish. Then all rules
-        are cancelled, and may clean up. An endless rule with ``background=True`` does not delay the end. If `stop`
-        itself is cancelled, it stops waiting.
+        The context raises ``rs.shutdown``. Rules that start from then on have `grace` seconds to finish; the context
+        does not wait for rules that run already. Then all async rules are cancelled, and have 5 seconds to clean up.
+        Plain functions cannot be cancelled: they run on, but can no longer act. An endless rule with
+        ``background=True`` does not delay the end. If `stop` itself is cancelled, it stops waiting.
         """
         runner = self._running()
         self.ask_to_stop()
@@ -247,6 +251,8 @@ class Context:
     def wipe(self, signal: Signal[Any]) -> None:
         """Withdraw the live spikes of a signal, and all spikes that they caused (L20). Any thread may call this.
 
+        Async runs that began with such a spike are cancelled.
+
         Raises:
             UndeclaredError: The policy does not have the signal.
         """
@@ -336,7 +342,7 @@ class Context:
 
     @property
     def now(self) -> float:
-        """The seconds since the context started."""
+        """The time on the context's clock: the seconds since the start, without pauses."""
         return self._running().now
 
     def read(self, slot: Slot[T]) -> T:

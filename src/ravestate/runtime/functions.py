@@ -24,7 +24,7 @@ class Functions:
         tasks: The runs of async rules.
         plain: The runs of plain functions, in worker threads; None before the first such run.
         last: The rule whose function started last.
-        running: Number of a run that did not end immediately → its rule context.
+        running: Number of a run in progress → its rule context. An async run is here only after its first step.
     """
 
     def __init__(self, loop: asyncio.AbstractEventLoop, runner: Runner, *, is_virtual: bool) -> None:
@@ -107,7 +107,7 @@ class Functions:
         self._runner.pump()
 
     async def cancel_all(self, reason: str, *, at_once: bool) -> None:
-        """Cancel all async rules. Unless `at_once`, wait until they have cleaned up. No function starts from now on."""
+        """Cancel all async rules. Unless `at_once`, give them time to clean up. No function starts from now on."""
         self._closing = True
         await self.tasks.close(reason, at_once=at_once)
 

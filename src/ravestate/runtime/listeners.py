@@ -96,7 +96,7 @@ class Hooks:
 
     Attributes:
         on_ended: Called with the outcome of each run that has ended.
-        on_failed: Called with the name of each rule that fails, and with its exception.
+        on_failed: Called with the name of each rule that fails, or whose predicate fails, and with the exception.
         on_endless: Called with the name of the last rule that ran, if an instant of virtual time does not end. If this
             hook is set, the context's time is virtual (as in a simulation). Plain functions then run one by one, so
             that threads do not race.

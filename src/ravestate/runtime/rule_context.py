@@ -70,7 +70,7 @@ class RuleContext:
         self._payloads = effect.payloads
         self._values: dict[str, Any] = effect.values  # type: ignore[assignment]  # made for this run alone
         self.cancelled = ""
-        """The reason for which the function was cancelled, or empty. A cancelled function may still write."""
+        """The reason for which the async function was cancelled, or empty. A cancelled function may still write."""
         self.ended = ""
         """The reason for which the run is over, or empty. Its function may still be running in a thread."""
 
@@ -159,6 +159,8 @@ class RuleContext:
     def wipe(self, signal: Signal[Any]) -> None:
         """Withdraw the live spikes of a signal, and all spikes that they have caused (L20).
 
+        Other async runs that began with such a spike are cancelled.
+
         Raises:
             UndeclaredError: The policy does not have the signal.
         """
@@ -209,7 +211,7 @@ class RuleContext:
 
     @property
     def now(self) -> float:
-        """The seconds since the context started."""
+        """The time on the context's clock: the seconds since the start, without pauses."""
         return self._host.clock.now()
 
     @property

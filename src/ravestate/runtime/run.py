@@ -26,9 +26,10 @@ UNABLE = (NotImplementedError, RuntimeError, ValueError)
 
 
 def run(*modules: Module | ModuleType | Policy, **options: Any) -> None:
-    """Run an agent until a rule calls ``ctx.stop()`` or the user presses Ctrl-C; then shut the agent down in order.
+    """Run an agent until a rule calls ``ctx.stop()``, or SIGINT (Ctrl-C) or SIGTERM comes; then shut it down in order.
 
     The agent runs as one context. If a platform among the modules serves many users, each user gets their own context.
+    With such a platform, ``ctx.stop()`` ends only the context of its user, and the agent ends with the platform.
 
     If the modules use `rawio`, but no platform among them lets a user talk, this function logs a warning. The arguments
     are those of `Context`.

@@ -396,7 +396,7 @@ class Runner:
         self._agent.ask_to_stop()
 
     async def close(self, *, at_once: bool = False) -> None:
-        """Cancel all runs; unless `at_once`, wait until they have cleaned up. From now on, no rule starts."""
+        """Cancel all runs; unless `at_once`, give them a few seconds to clean up. From now on, no rule starts."""
         await self.functions.cancel_all(ENDED, at_once=at_once)
         self.closed = True
         self.functions.abandon(ENDED)

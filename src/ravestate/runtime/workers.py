@@ -20,7 +20,10 @@ from time import monotonic
 LAST_GRACE = 5.0  # when the process ends, it waits this many seconds for running functions
 
 SHARE = 32
-"""The maximum number of functions of one context that run at a time; further functions wait until one of them ends."""
+"""The maximum number of functions of one context that run at a time; further functions wait until one of them ends.
+
+An abandoned function (`JobQueue.abandon`) does not count, even while it runs on.
+"""
 
 THREADS = 256  # the maximum number of worker threads in the process; if all are busy, further jobs wait
 IDLE = 30.0  # a worker thread ends if it has had no job for this many seconds
@@ -180,13 +183,14 @@ class JobQueue:
     def holders(self) -> list[Job]:
         """Return the running jobs that make other jobs wait.
 
-        If this context's share is full, these are its running jobs. Otherwise, they are the running jobs of all contexts."""
+        If this context's share is full, these are its running jobs. Otherwise, they are those of all contexts.
+        """
         with self._pool.change:
             full = len(self._begun) >= SHARE
             return [job for job in self._pool.at_work if not full or job in self._begun]
 
     def close(self) -> None:
-        """Drop the jobs that have not begun. If no other context has an open queue, idle threads end."""
+        """Drop the jobs that wait in this queue. If no other context has an open queue, idle threads end."""
         with self._pool.change:
             self._waiting.clear()
             if self._open:

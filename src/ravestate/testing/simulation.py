@@ -46,7 +46,7 @@ class Simulation:
         said: The values that were written to ``rawio.output``, in order.
         fired: The name of the rule of each run that fired, in the order in which the runs ended. A run has not fired if
             it resigned, or if it failed before its first write.
-        failures: The name of each rule that failed, with its exception.
+        failures: The name of each rule that failed, or whose predicate failed, with the exception.
 
     Example:
         >>> import ravestate as rs
@@ -103,6 +103,7 @@ class Simulation:
 
         Raises:
             UsageError: The file cannot be read or has mistakes. The message lists all mistakes.
+            DeclarationErrors: The modules, or the values of the settings, have faults.
         """
         spec = AgentSpec.from_file(Path(path))
         platforms = {name for name, folder in BUILT_IN.items() if folder == "platform"}

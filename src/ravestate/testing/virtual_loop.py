@@ -12,9 +12,9 @@ from typing import Any
 
 from ravestate.errors import EngineError
 
-REAL_LIMIT = 30.0  # virtual time waits at most this many real seconds for plain functions
+REAL_LIMIT = 30.0  # virtual time waits this many real seconds for plain functions, or longer if they are computing
 WORKING = 0.1  # plain functions that use at least this share of a processor are computing, and get more time
-WORK_FACTOR = 10  # computing functions get this many times as long, so that a slow machine gives the same result
+WORK_FACTOR = 10  # computing functions get up to this many times as long, so that a slow machine gives the same result
 
 
 class _Timer(asyncio.TimerHandle):
@@ -32,8 +32,8 @@ class _Timer(asyncio.TimerHandle):
 class VirtualLoop(asyncio.SelectorEventLoop):
     """A loop that runs as fast as it can, until nothing is left to do at or before the time `goal`.
 
-    Plain functions in threads take no virtual time. The loop waits for the functions that `busy()` names, and for the
-    functions that `asyncio.to_thread` runs.
+    Plain functions in threads take no virtual time. The loop waits for the functions that `busy()` names, and for those
+    that `run_in_executor` runs, for instance through `asyncio.to_thread`.
     """
 
     is_virtual = True
@@ -114,7 +114,10 @@ class VirtualLoop(asyncio.SelectorEventLoop):
         self._virtual = max(self._virtual, goal)
 
     def on_idle(self) -> None:
-        """Jump to the next timer, or stop if `goal` comes first. The loop calls this when only timers are left."""
+        """Jump to the next timer, or stop if `goal` comes first. The loop calls this when only timers are left.
+
+        If there is neither a timer nor a goal, raise a RuntimeError.
+        """
         timers: list[asyncio.TimerHandle] = vars(self)["_scheduled"]  # an attribute of BaseEventLoop
         due: float | None = timers[0].when() if timers else None
         if self.goal is not None and (due is None or due > self.goal):
