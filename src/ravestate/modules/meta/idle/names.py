@@ -21,11 +21,12 @@ class Settings(rs.Settings):
     """If the agent has just asked a question: seconds without activity after which the agent is bored. A value below
     ``bored_after`` has no effect."""
     writing_time: Seconds = 20.0
-    """Seconds since the last key press after which the agent is bored, if the user has typed a line but not sent it."""
+    """Seconds since the last key press after which the agent is bored, if the user has typed a line but not sent it. A
+    value below ``bored_after`` has no effect."""
     remarks: Annotated[int, Field(ge=0)] = 2
-    """The maximum number of remarks that the bored agent makes before the user says or types something again."""
+    """The maximum number of remarks that the bored agent makes before the user says, types or shows something."""
     impatient_after: Seconds = 1.0
-    """Seconds that a ready rule waits before the agent is impatient."""
+    """Seconds that ready rules wait before the agent is impatient."""
 
 
 module = rs.Module("idle", requires=[rawio], settings=Settings)
@@ -43,7 +44,7 @@ hushed = module.signal("hushed")
 """The user wants quiet: they have said, for example, "stop" or "please be quiet"."""
 
 impatient = module.signal("impatient")
-"""A ready rule has waited for ``impatient_after`` seconds."""
+"""For ``impatient_after`` seconds, a ready rule was waiting at each moment."""
 
 asked: rs.Slot[str] = module.slot("asked", "")
 """The question at the end of the agent's last utterance; empty if there is no question."""
@@ -52,7 +53,7 @@ remarked: rs.Slot[bool] = module.slot("remarked", True)
 """Whether the agent or the user has said, typed or shown anything since the agent was last bored."""
 
 unanswered: rs.Slot[int] = module.slot("unanswered", 0)
-"""The number of remarks that the agent has made out of boredom since the user last said or wrote something."""
+"""The number of remarks that the agent has made out of boredom since the user last said, typed or showed something."""
 
 dismissed = module.flag("dismissed")
 """Whether the user's last words ask for quiet or say goodbye."""

@@ -89,7 +89,7 @@ def _reason_for_quiet(ctx: rs.RuleContext) -> str:
     background=True,
 )
 async def notice_delay(ctx: rs.RuleContext) -> None:
-    """Emit `impatient` when a ready rule waits too long."""
+    """Emit `impatient` when ready rules wait too long."""
     ctx.emit(impatient)
 
 

@@ -156,7 +156,7 @@ class BoltStore:
     # ------------------------------------------------------------------------------------ types
 
     def prepare(self, types: Types) -> None:
-        """Create an index of ids for each type. A server needs no tables."""
+        """Check or note the format, and create an index of ids for each type. A server needs no tables."""
         rows = self.read(f"MATCH (m:`{META}` {{`key`: 'format'}}) RETURN m.`value`", {})
         if rows:
             check_format(self._place, rows[0][0], FORMAT)

@@ -14,7 +14,8 @@ def bound(module: rs.Module, name: str, type: str) -> rs.Slot[Node | None]:
     """Declare and return a slot for a node. Each node that a rule writes to the slot is also saved in memory.
 
     The module gets the slot and a background rule ``remember_<name>``. The rule saves all nodes, in the order of the
-    writes. A write that fails is an error of that rule (``rs.error``). Writing None leaves memory unchanged.
+    writes. If a write fails, or there is no memory, this is an error of that rule (``rs.error``). Writing None
+    leaves memory unchanged.
 
     Args:
         module: The slot's module, which must require `ontology`.

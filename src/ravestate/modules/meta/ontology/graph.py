@@ -1,4 +1,4 @@
-"""The operations on the graph, in Cypher. Each operation is one transaction."""
+"""The operations on the graph, in Cypher. The writes of each operation are one transaction."""
 
 from __future__ import annotations
 
@@ -97,7 +97,7 @@ class Graph:
     def unrelate(self, node: Node, relation: str, other: Node, /, *, forget: bool = False) -> None:
         """Remove a relation, if there is one.
 
-        With `forget`, also forget `other`, unless another node has a relation to it. A person or robot also stays if
+        With `forget`, also forget `other`, unless it is still the target of a relation. A person or robot also stays if
         memory knows more about them than their name. The file still has the bytes of forgotten nodes until the next
         `purge`. Memory purges by itself as soon as it has nothing else to do.
         """
@@ -270,7 +270,7 @@ class Graph:
         self._store.tidy()
 
     def export(self) -> dict[str, Any]:
-        """Return all nodes and relations as a document for JSON, which `load` reads."""
+        """Return all nodes and relations of declared types as a document for JSON, which `load` reads."""
         nodes = self._matching(tuple(self._types), {})
         known = {node.id for node in nodes}
         relations = [

@@ -14,8 +14,8 @@ class Settings(rs.Settings):
     """The language of the agent, and your own files of phrases."""
 
     language: str = "en"
-    """The agent's language, e.g. ``de`` or ``de-AT``. If an intent (a meaning to express) has no phrases in this language, the
-    agent says it in English."""
+    """The agent's language, e.g. ``de`` or ``de-AT``. If an intent (a meaning to express) has no phrases in
+    ``de-AT``, the agent says it in ``de``, or else in English."""
     phrases: tuple[Path, ...] = ()
     """Your own files of phrases. They replace the modules' phrases, or add to them."""
 

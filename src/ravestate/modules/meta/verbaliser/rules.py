@@ -51,7 +51,7 @@ def phrase_book(package: str | None, own: tuple[Path, ...], language: str) -> Ph
     """Return a book of the built-in phrases, the phrases of `package`, and the files `own` (absolute paths).
 
     For the same intent and language, the phrases of a later source in this list replace the phrases of earlier sources.
-    All contexts of the process share the book, so the process reads each file only once.
+    All contexts of the process share the book. So the process does not notice later changes of the files.
     """
     packages = (HERE,) if package in (None, HERE) else (HERE, package)
     try:

@@ -23,9 +23,10 @@ knees, the depth of the torso, and the height of the shoulders."""
 def features_of(skeleton: Skeleton) -> NDArray[np.float64]:
     """Return the `COUNT` features of a movement. A feature is NaN if the joints that it needs are not visible.
 
-    First come the mean place and the size of the movement of each joint and of the torso. Next come the correlations
-    between pairs of coordinates. The last features describe the wrists: their rotations, the distance between them, and
-    their distances from the face. All features are statistics over time, so tempo and phase do not matter.
+    First come the mean place and the size of the movement of each joint and of the torso. The size of the movement of
+    the shoulders' height follows. Next come the correlations between pairs of coordinates. The last features describe
+    the wrists: their rotations, the distance between them, and their distances from the face. All features are
+    statistics over time, so tempo and phase do not matter.
     """
     import numpy as np
 

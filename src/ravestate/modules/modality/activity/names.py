@@ -62,7 +62,7 @@ label: rs.Signal[str] = module.signal("label", payload=str, input=True)
 
 recognised: rs.Signal[Activity] = module.signal("recognised", payload=Activity, input=True)
 """A person is performing an activity that the agent knows. Until they stop, the signal is raised every `step` seconds.
-An unknown movement does not raise it."""
+An unknown movement does not raise it. Each `label` raises it, too."""
 
 taught: rs.Signal[Lesson] = module.signal("taught", payload=Lesson, input=True)
 """A user has named the movement between two times. The recogniser learns this movement from the poses

@@ -33,7 +33,7 @@ activity."""
 RIDGE = 0.05
 """This variance is added to every feature, and all correlations shrink by this share."""
 SPREAD = 0.8
-"""The deviations of a taught activity, relative to those of an average activity."""
+"""The deviations of a taught activity with many demonstrations, relative to those of an average activity."""
 FAVOUR = 0.5
 """The cost (see `_compared`) of a taught activity is lowered by this number, so that it wins a close comparison."""
 LIMIT = 4.0
@@ -62,8 +62,8 @@ class Recognition:
     """The most probable activity, even if the movement is too far from it. It is empty if one of the *other* movements is
     more probable, or if too little of the body is visible."""
     distance: float = float("inf")
-    """The distance from the most probable activity (mean squared deviation of the features), divided by the limit.
-    It is infinite if too little of the body is visible."""
+    """The distance from the most probable activity or *other* movement (mean squared deviation of the
+    features), divided by the limit. It is infinite if too little of the body is visible."""
 
 
 @dataclass(frozen=True, slots=True, eq=False)

@@ -47,7 +47,7 @@ class Skeleton:
     """(T, 9, 3): the places of `JOINTS`. Legs are relative to the middle of the hips, other joints to the middle of the
     shoulders."""
     present: NDArray[np.bool_]
-    """(9,): whether a joint is visible for long enough."""
+    """(9,): whether a joint is visible for long enough; for a joint of the legs, the hips must be visible, too."""
     torso: NDArray[np.float64]
     """(T, 3): the vector from the middle of the hips to the middle of the shoulders."""
     rise: NDArray[np.float64]

@@ -43,7 +43,7 @@ PICTURES: tuple[tuple[Feeling, re.Pattern[str]], ...] = (
 
 
 def recognise(text: str, names: Collection[str] = ()) -> Feeling | None:
-    """Return the feeling that fits `text` (English), or None.
+    """Return the feeling that fits the words of `text` (English), or else its emoji and smileys, or None.
 
     The first text with a sentence that equals no example in ``feelings.yaml`` loads the sentence model.
 

@@ -13,7 +13,10 @@ module = rs.Module("interloc")
 
 
 class Recognised(str):
-    """An item of `users`: the name of a user whom a platform has recognised. `node` is the user's node in memory."""
+    """An item of `users`: the name of a user whom a platform or `visionio` has recognised.
+
+    `node` is the user's node in memory.
+    """
 
     node: Node
 
@@ -28,11 +31,11 @@ agent: rs.Slot[str] = module.slot("agent", "Ravestate", type=str, input=True)
 """The agent's name. `agentqa` writes it, from the file of facts about the agent."""
 
 users: rs.Collection[Any] = module.collection("users", input=True)
-"""The users who are present. The platform chooses a key for each user. The item is the user's name, or None while the
-name is unknown. If a platform has recognised the user, the name is a `Recognised`."""
+"""The users who are present. The module that adds a user chooses the key. The item is the user's name, or None while
+the name is unknown. If a platform or `visionio` has recognised the user, the name is a `Recognised`."""
 
 recognised: rs.Signal[rs.Entry] = module.signal("recognised", payload=rs.Entry, input=True)
-"""A platform has recognised a user who was already present. The payload is their entry in `users`."""
+"""A platform or `visionio` has recognised a user who was already present. The payload is their entry in `users`."""
 
 facts: rs.Collection[tuple[str, ...]] = module.collection("facts", input=True)
 """The known facts about the user: topic, such as ``home`` → values. A module that learns facts writes them."""

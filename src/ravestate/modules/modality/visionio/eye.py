@@ -33,10 +33,10 @@ class Eye:
     """One stream of pictures in the vision worker. All agents of this process share the worker.
 
     Args:
-        python: The interpreter of the worker; by default an interpreter that has the packages.
+        python: The interpreter of the worker; by default, see `eyes_python`.
 
     Raises:
-        PlatformError: No interpreter has the packages.
+        PlatformError: There is no interpreter for the worker.
     """
 
     def __init__(self, python: Path | None = None) -> None:

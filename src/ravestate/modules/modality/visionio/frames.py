@@ -110,7 +110,10 @@ class Frames:
             await self._wait(waiter)
 
     async def taken(self) -> None:
-        """Wait until `next` has returned the newest picture, so that the caller can `put` another one."""
+        """Wait until `next` has returned the newest picture, or the camera is closed.
+
+        Then the caller can `put` another picture.
+        """
         while True:
             with self._lock:
                 if self._newest is None or self.closed:

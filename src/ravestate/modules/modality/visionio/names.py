@@ -57,7 +57,7 @@ class Settings(rs.Settings):
 module = rs.Module("visionio", requires=[rawio, interloc, ontology, verbaliser, idle, activity], settings=Settings)
 
 facevec: rs.Signal[FaceVec] = module.signal("facevec", payload=FaceVec, input=True, limit=1000)
-"""A face in a picture, with its vector. The signal is raised for each face in each picture."""
+"""A face in a picture, with its vector. The signal is raised for each picture and each face that has a vector."""
 
 sighted: rs.Signal[Sighting] = module.signal("sighted", payload=Sighting, limit=100)
 """The faces in a new picture. The agent does not know yet to whom they belong."""

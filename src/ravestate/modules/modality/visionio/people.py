@@ -1,4 +1,5 @@
-"""Functions that store, find and forget faces in memory. Memory has faces only of people who agreed.
+"""Functions that store, find and forget faces in memory. Memory has faces only of people who agreed, and faces
+that ``ravestate vision learn`` stored.
 
 A stored face is a vector: 128 numbers that identify the person.
 """

@@ -17,8 +17,11 @@ NEEDED = ("dlib", "cv2", "face_recognition_models")
 def eyes_python(given: Path | None = None) -> str:
     """Return the interpreter for the vision worker: `given`, the interpreter of ``make eyes``, or the current one.
 
+    Only the current interpreter is searched for the packages.
+
     Raises:
-        PlatformError: No interpreter has the packages; the message says how to get them.
+        PlatformError: The file `given` does not exist, or the current interpreter lacks a package. The message says how
+            to get the packages.
     """
     if given is not None:
         path = given.expanduser()

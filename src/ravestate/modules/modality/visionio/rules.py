@@ -152,7 +152,7 @@ async def mark_faces(ctx: rs.RuleContext) -> rs.Resign | None:
     background=True,
 )
 async def feed(ctx: rs.RuleContext) -> None:
-    """Raise `facevec` for each face in a picture, with the person in memory to whom it belongs."""
+    """Raise `facevec` for each face that has a vector, with the person in memory to whom it belongs. Raise `looked`."""
     settings: Settings = ctx.settings
     sighting = ctx.payload(sighted)
     for track, new in sighting.faces:

@@ -19,7 +19,7 @@ REFRESH = 3.0
 """After enough vectors of a face agree, the face gets a new vector at this interval (seconds), because two people may
 have changed places."""
 TRIES = 10
-"""After this many vectors, a badly visible face gets only one new vector per second."""
+"""If the vectors of a face do not agree after this many vectors, the face gets only one new vector per second."""
 THOROUGH = 1.0
 """The seconds between two thorough searches of a picture, which find small faces."""
 

@@ -58,7 +58,10 @@ class Watch:
         return self._eye.skipped if self._eye is not None else 0
 
     async def begin(self) -> bool:
-        """Start the worker and open the camera. Return whether this worked. If not, the log names the missing part."""
+        """Start the worker and open the camera. Return whether this worked.
+
+        If not, the log says why, unless the setting `source` is empty.
+        """
         settings = self._settings
         source = settings.source
         if self._frames is None and source == "default":

@@ -34,7 +34,8 @@ def play(sim: Simulated, bag: str | Path, *, types: Types | None = None) -> int:
     Args:
         sim: The simulation. The bag begins at the simulation's current time.
         bag: A ``.bag`` file of ROS 1, or a folder or file of ROS 2.
-        types: The types of the bag's messages, if the bag does not contain their definitions.
+        types: The types of the bag's messages, if the bag does not contain their definitions. By default, these are
+            the common types of ROS 2.
 
     Returns:
         The number of writes to slots. A message that goes to two slots counts twice.

@@ -45,7 +45,7 @@ class Bus:
         host: The address to listen on.
 
     Raises:
-        PlatformError: The port is in use.
+        PlatformError: The server cannot listen on the address, for example because the port is in use.
     """
 
     def __init__(self, port: int = 7411, host: str = "127.0.0.1") -> None:
@@ -115,7 +115,7 @@ class Bus:
                 node.note(channel, f"{binding['name']} carries {binding['type']}, not {other['type']}")
 
     def call(self, caller: _BusNode, channel: int, number: int, body: memoryview) -> None:
-        """Pass on a call to the server of its service."""
+        """Pass on a call to the server of its service. If there is none, or it has another type, answer with a fault."""
         binding = caller.bindings[channel]
         found = self.find("server", binding["name"])
         if not found:

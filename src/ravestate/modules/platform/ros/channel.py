@@ -82,7 +82,8 @@ class Channel:
         If the task that waits for the answer is cancelled, the call or the goal is cancelled too.
 
         Raises:
-            PlatformError: The value does not fit the type, no answer comes in time, or the server refuses the call.
+            PlatformError: The value does not fit the type, the bridge or the server fails, no answer comes in time, or
+                the goal does not succeed.
         """
         return await self.node.call(self, value, feedback)
 

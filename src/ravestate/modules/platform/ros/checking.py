@@ -1,4 +1,7 @@
-"""Check whether other nodes use the topics of an agent's slots, and whether the types match. Say how to fix faults."""
+"""Check whether other nodes use the topics, services and actions of an agent's slots, and whether the types match.
+
+Say how to fix faults.
+"""
 
 from __future__ import annotations
 
@@ -52,7 +55,7 @@ async def check(node: Node, slots: Iterable[Bound]) -> list[Line]:
     """Check all slots, or all parts of a robot, that use one node. Return a line for each.
 
     Raises:
-        PlatformError: ROS is not installed here, or no ROS master runs.
+        PlatformError: ROS is not installed here, or no ROS master (or bus) runs.
     """
     wanted = list(slots)
     lines: list[Line] = []
@@ -66,7 +69,7 @@ async def check(node: Node, slots: Iterable[Bound]) -> list[Line]:
 
 
 def look_at(slot: Bound, node: Node, graph: Mapping[str, list[dict[str, Any]]]) -> Line:
-    """Return the line about a slot: whether the network has the nodes that the slot needs at the other end."""
+    """Return the line about a slot: whether the network has the nodes that the slot needs, with the right type."""
     binding = slot.binding
     name = node.absolute(binding.name)
     bound = f"{binding.kind} of {name} ({binding.type})"

@@ -72,7 +72,8 @@ class ToSubscriber(_Connection):
     Args:
         sock: The connected socket; this object closes it.
         lost: A function to call once on the loop when the subscriber has closed the connection.
-        depth: The maximum number of messages that wait for the subscriber. A further message replaces the oldest one.
+        depth: The maximum number of messages that wait behind the one on its way. A further message replaces the oldest
+            of them.
     """
 
     def __init__(self, sock: socket.socket, lost: Callable[[], None], depth: int) -> None:
@@ -126,7 +127,7 @@ class FromPublisher(_Connection):
         self._lacks = BLOCK
 
     def read(self) -> None:
-        """Read all data that have come, then pass on the complete messages. Only the last of them counts as the newest."""
+        """Read data until a limit (`TURN`, `MESSAGES`), and pass on the complete messages. Only the last one counts as newest."""
         bodies = list[memoryview]()
         goes_on, room = self._split(bodies), TURN
         while goes_on and room > 0 and len(bodies) < MESSAGES:

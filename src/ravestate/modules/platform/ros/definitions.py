@@ -25,7 +25,7 @@ def full_name(name: str, kind: str = "msg") -> str:
 
     Args:
         name: A name with one or two slashes.
-        kind: The middle of the full name: ``msg``, ``srv`` or ``action``.
+        kind: The middle of the full name (``msg``, ``srv`` or ``action``), if `name` has only one slash.
 
     Raises:
         PlatformError: The name does not look like the name of a type.

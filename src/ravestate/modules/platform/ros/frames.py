@@ -1,6 +1,7 @@
-"""The agent's end of the pipe to a bridge (a process that runs a ROS library): frames over a socket.
+"""The agent's end of the pipe to a bridge (a process that runs a ROS library).
 
-``children/pipe.py`` is the other end, and describes the frames.
+The pipe is a socket that carries *frames*: units of data, each with a head and a body. (They are not the coordinate
+frames of ROS.) ``children/pipe.py`` is the other end, and describes the frames.
 """
 
 from __future__ import annotations
@@ -25,7 +26,7 @@ SHARED = 1
 PASSED = 2
 """The flag of a frame that comes with a socket; see `Frames.passed`."""
 LARGE = 1 << 16
-"""A body of at least this many bytes travels in shared memory."""
+"""Over a Unix socket on Linux, a body of at least this many bytes travels in shared memory. Over TCP, it does not."""
 BLOCK = 1 << 16
 """Read at most this many bytes in one call. To allocate a larger buffer would take longer than to read a short message."""
 TURN = 64
@@ -66,7 +67,8 @@ class Frames:
     Args:
         sock: The connected socket; this object closes it.
         handle: A function to call on the loop with the kind, channel, number and body of each frame that comes.
-        lost: A function to call once on the loop when the other end has closed the socket.
+        lost: A function to call once on the loop when the other end has closed the socket or sends other data, or the
+            socket fails.
     """
 
     def __init__(self, sock: socket.socket, handle: Handle, lost: Callable[[], None]) -> None:
@@ -99,7 +101,7 @@ class Frames:
         self.send(kind, channel, number, json.dumps(value).encode())
 
     async def flush(self) -> None:
-        """Wait until all frames have left."""
+        """Wait until all frames have left, or the socket is closed."""
         await self._out.flush()
 
     def passed(self) -> socket.socket:

@@ -15,7 +15,7 @@ PROFILES: Mapping[str, Mapping[str, Any]] = {
     "sensor_data": {**QUALITY, "depth": 5, "reliability": "best_effort"},
     "latched": {**QUALITY, "depth": 1, "durability": "transient_local"},
 }
-"""The profiles of ROS 2 for the quality of service, by name."""
+"""The profiles for the quality of service, by name."""
 
 CHOICES = {"reliability": ("reliable", "best_effort"), "durability": ("volatile", "transient_local")}
 
@@ -52,7 +52,7 @@ def quality(qos: str | Mapping[str, Any] | None, *, depth: int, latch: bool) -> 
         qos: The name of a profile, or some of the values ``depth``, ``reliability`` and ``durability``. None means the
             profile ``default``, but with the argument `depth`.
         depth: The maximum number of messages in the queue, if `qos` sets no depth.
-        latch: Whether late subscribers get the last message.
+        latch: Whether late subscribers get the last message, whatever `qos` says. If false, `qos` decides this.
 
     Raises:
         DeclarationError: There is no such profile, or a value is wrong.

@@ -33,7 +33,7 @@ WAITING = 1000
 """At most this many frames (units of data for the bridge) wait while the bridge starts. If there are more, the node drops
 the oldest ones."""
 LEAVING = 2.0
-"""A node that is closed may take this many seconds to send its last messages."""
+"""A node that is closed may take this many seconds to send its last messages to directly connected subscribers."""
 
 _nodes = itertools.count(1)  # nodes need different names, because ROS 1 ends an older node of the same name
 
@@ -67,7 +67,7 @@ class Node:
         title: The name of the node in logs and errors, for example ``ros1``.
         types: The types of the node's messages.
         make_link: A function that makes the link.
-        name: The node's name.
+        name: The beginning of the node's name. The process id follows.
         namespace: The namespace of relative names.
         remap: The names to replace, with their new names.
         environment: Environment variables for the bridge.
@@ -96,7 +96,7 @@ class Node:
         self.goals: dict[str, set[asyncio.Future[Any]]] = {}
         """The open goals of actions, by the names of the slots that sent them."""
         self.ready = asyncio.Event()
-        """An event that is set while the link works."""
+        """An event that is set while the link works, and when the link has failed for good."""
         number = next(_nodes)
         self._name = f"{name}_{os.getpid()}" + (f"_{number}" if number > 1 else "")
         self._namespace = namespace
@@ -159,7 +159,10 @@ class Node:
         return self._open("subscriber", topic, type, binding, take=take, pause=1 / rate if rate else 0.0)
 
     def advertise(self, topic: str, type: str, *, latch: bool = False, qos: Mapping[str, Any]) -> Channel:
-        """Return a channel on which to publish. With `latch`, late subscribers get the last message."""
+        """Return a channel on which to publish.
+
+        With `latch`, late subscribers get the last message. In ROS 2, the durability in `qos` must say so, too.
+        """
         return self._open("publisher", topic, type, {"latch": latch, "depth": qos["depth"], "qos": dict(qos)})
 
     def client(self, service: str, type: str, *, timeout: float) -> Channel:
@@ -304,7 +307,7 @@ class Node:
             raise PlatformError(f"{self.title}: {reason}") from None
 
     async def close(self) -> None:
-        """Send the last messages. Then close the link and all channels."""
+        """Send the last messages. Then close the link and all connections, and end the open calls with an error."""
         for task in self._tasks:
             task.cancel()
         with contextlib.suppress(TimeoutError):

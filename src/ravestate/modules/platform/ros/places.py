@@ -72,10 +72,11 @@ class Place:
 def ros1_place(python: Path | None) -> Place:
     """Return the place of rospy.
 
-    The search order is: the interpreter `python`, the sourced ROS 1, a ROS 1 in /opt/ros, and Debian's rospy.
+    If `python` is given, this interpreter runs the bridge, unchecked. Otherwise, the search order is: the sourced
+    ROS 1, a ROS 1 in /opt/ros, and Debian's rospy.
 
     Raises:
-        PlatformError: There is no rospy.
+        PlatformError: The search finds no rospy.
     """
     if python is not None:
         return Place("ros1", "ros1_node.py", str(python.expanduser()), mend=f". {ROS1_MEND}")
@@ -104,7 +105,7 @@ def ros2_place(python: Path | None, backend: str = "auto") -> Place:
         backend: ``auto``, ``rclpy`` or ``dds``.
 
     Raises:
-        PlatformError: There is neither rclpy nor DDS.
+        PlatformError: The search finds nothing for this backend.
     """
     if python is not None:
         named = str(python.expanduser())

@@ -31,7 +31,7 @@ class BridgeProcess:
         config: The configuration of the program, as data for JSON.
         handle: A function to call with each frame from the process, except the frames that this class handles.
         ready: A function to call when the first process, or a replacement, is ready for work.
-        lost: A function to call with a sentence when a process has died.
+        lost: A function to call with a sentence when a process has died, or cannot start.
     """
 
     def __init__(

@@ -26,7 +26,8 @@ class NodeSettings(rs.Settings):
     """The settings that a node of ROS 1 and a node of ROS 2 have in common."""
 
     node: str = "ravestate"
-    """The beginning of the node's name. After it comes the id of the agent's process."""
+    """The beginning of the node's name. The id of the agent's process follows, then a number for the process's further
+    nodes."""
     namespace: str = ""
     """The namespace of relative names, such as ``/robot``."""
     remap: dict[str, str] = pydantic.Field(default_factory=dict[str, str])
@@ -101,7 +102,10 @@ def connect(
 
     @module.rule(when=rs.startup.detached(), writes=node, detached=True, background=True)
     async def connect(ctx: rs.RuleContext) -> rs.Resign | None:
-        """Open the topics, services and actions of all slots. With `use_sim_time`, follow the topic ``/clock``."""
+        """Make the node, and open the channels of all slots that publish or call. In virtual time, do nothing.
+
+        With `use_sim_time`, follow the topic ``/clock``. Slots that subscribe have rules of their own.
+        """
         if getattr(asyncio.get_running_loop(), "is_virtual", False):
             return rs.Resign("time is virtual: a test writes the slots, or plays a bag")
         made = ctx[node] = make_node(ctx.settings, ctx.stop)  # early, so that other rules for startup find the node

@@ -24,7 +24,7 @@ if TYPE_CHECKING:
     from .node import Channel, Node
 
 DEEP = 1000
-"""With ``keep="all"``, ROS 2 queues at most this many messages for the agent."""
+"""With ``keep="all"``, ROS 2 queues at most this many messages for the agent, unless `qos` sets a depth."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -71,7 +71,7 @@ class ServiceSlot(TopicSlot):
     __slots__ = ("failed", "requested")
     names = ("requested",)
     answers: tuple[str, ...] = ("changed", "failed")
-    """The signals that the server's answers raise. A write to the slot does not raise them."""
+    """The signals that report on a request. A write to the slot does not raise them."""
     requested: rs.Signal[Any]
     failed: rs.Signal[str]
 
@@ -80,7 +80,8 @@ class ActionSlot(ServiceSlot):
     """A slot that is bound to an action.
 
     A write is a goal, and raises ``requested``. Feedback raises ``feedback``, and the result raises ``changed``. A
-    failure (refused, aborted, cancelled) raises ``failed``; the payload is the reason.
+    failure (no server, refused, aborted, cancelled) raises ``failed``; the payload is the reason. If the slot's own
+    ``until`` cancels a goal, no signal reports this.
     """
 
     __slots__ = ("feedback",)
@@ -97,7 +98,7 @@ class Goal:
     task: asyncio.Task[Any] | None = None
 
     def follow(self, task: asyncio.Task[Any]) -> None:
-        """When `task` ends, which sends the goal to the server, pass its outcome to the goal's sender."""
+        """Pass the outcome of `task` to the goal's sender. The task sends the goal to the server, and waits for the result."""
         self.task = task
         task.add_done_callback(self._end)
 
@@ -287,8 +288,8 @@ class Declarations:
     ) -> ActionSlot:
         """Declare a slot that is bound to an action. A write is the goal, and ``.changed`` carries the result.
 
-        Feedback raises ``.feedback``. The slot cancels the goal when `until` is met, or when the ``until`` of a rule
-        that writes the slot is met.
+        Feedback raises ``.feedback``. The slot cancels its goals when `until` is met, or when the ``until`` of a rule
+        that writes the slot is met. Only the second case raises ``.failed``.
 
         Args:
             module, name: As for `subscriber`.

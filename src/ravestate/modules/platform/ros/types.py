@@ -123,7 +123,7 @@ class Types:
             ) from error
 
     def decode(self, data: memoryview | bytes, name: str) -> Any:
-        """Return the message that `data` holds in its wire format. Its arrays are views of `data`, not copies.
+        """Return the message that `data` holds in its wire format. Its arrays of numbers are views of `data`.
 
         Raises:
             PlatformError: The bytes are not a message of this type.

@@ -17,7 +17,8 @@ class Settings(NodeSettings):
     """The settings of the node of ROS 2."""
 
     backend: Literal["auto", "rclpy", "dds", "bus"] = "auto"
-    """``rclpy``; ``dds``, which carries only topics; the built-in ``bus``; or ``auto``: rclpy, or else dds."""
+    """``rclpy``; ``dds``, which carries only topics; the built-in ``bus``, without actions; or ``auto``: rclpy, or else
+    dds."""
     domain: int | None = pydantic.Field(None, ge=0, le=232)
     """The number of the ROS 2 domain. By default ``ROS_DOMAIN_ID`` in the environment, or else 0."""
 

@@ -36,6 +36,7 @@ class Faces:
 
     Raises:
         ImportError: A package is missing.
+        FileNotFoundError: A model file of dlib is missing.
     """
 
     def __init__(self) -> None:

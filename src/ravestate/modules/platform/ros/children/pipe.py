@@ -4,7 +4,7 @@ The bridge programs in this folder use this module.
 
 A frame is a head (kind, flags, channel, number, size) and a body of `size` bytes. The channel is the number of one topic,
 service or action of the agent. The frame's number is the number of a call, or of a connection. A body of at least `LARGE`
-bytes travels in shared memory: the sender copies it there once, and the pipe carries the file descriptor.
+bytes travels in shared memory (on Linux): the sender copies it there once, and the pipe carries the file descriptor.
 """
 
 # pyright: basic
