@@ -2,8 +2,8 @@
 
 The automaton is pure. It uses no clock, thread, lock or random number, and does not depend on hash order.
 
-The code cites the laws of the automaton by number, such as L15. ``docs/explanation/processing-model.md`` explains the
-laws, and ``tests/laws`` has one file of tests for each law.
+The code cites the laws of the automaton by number, such as L15. ``tests/laws`` has one file for each law, which states
+and tests it. ``docs/explanation/processing-model.md`` explains the laws about spikes and runs.
 
 A working `Engine` has `Parts` (``parts.py``): objects that share one `State`. Each part has a file of its own. An event
 passes through the parts in this order:
@@ -20,8 +20,9 @@ passes through the parts in this order:
 4. *Consent.* When the activations of step 3 have started, `Agenda.consent_round` lets the other ready activations ask
    for consent. `Consent.ask` looks for rivals (better clauses that write the same slots), and a `Horizon` judges
    whether each rival may still become ready. With consent, `Runs.start` starts the run. Without consent, `Waits.begin`
-   keeps the `Refusal`, the reasons for the wait. A `Roster` finds the rivals in a large group. If a refusal is certain,
-   `Leaders` finds it without a search. `stalemate` finds activations that wait only for each other.
+   keeps the `Refusal`, the reasons for the wait. A `Roster` finds the rivals in a large group. If a better activation
+   was refused just before, `Leaders` may refuse without examining every rival. `stalemate` finds activations that wait
+   only for each other.
 5. *End.* `Runs.finish` settles a run by the table `OUTCOMES` (``outcomes.py``).
 6. *Wake.* A change that may lift a refusal marks a causal group in `State.dirty`, or a *hope* in `State.stirred`, or
    puts the refused activation into `State.asking`. A hope is something outside the activation's groups that may lift

@@ -2,7 +2,7 @@
 
 An activation is a clause plus the spikes that it has acquired. Each constraint of the clause is a *need*: one spike
 meets it. With consent, the activation becomes a run of the rule. Every clause also has an activation on stand-by, which
-holds no spike yet. No object represents a stand-by: the engine creates an object only when the first spike comes.
+holds no spike yet. No object represents a stand-by: the engine creates an object when the first spike comes, or later.
 
 - `GATHERING`: the activation lacks a spike, a spike is too young, or a predicate on a slot is false.
 - `READY`: the activation holds all its spikes, all are old enough, and its slot predicates are true. It asks for
@@ -52,7 +52,7 @@ class Step(enum.IntEnum):
     REFUSE = 2  # a group refused consent (L15)
     GRANT = 3  # every group consented (L17)
     CANCEL = 4  # the run was interrupted, timed out, or wiped (L18, L20, L21)
-    END = 5  # the run finished, or the activation gave up its last spike
+    END = 5  # the run finished, or the activation gave up all its spikes
 
 
 _G, _R, _W, _X, _C, _E = State  # short names, to make the table readable
@@ -113,7 +113,7 @@ class Activation:
         origin: The origin of the run (`Spike.origin`).
         groups: The groups in which the run took its slots when it began. They may have merged since.
         wrote: Whether the run has written a slot.
-        deadline: The time at which the run times out (seconds).
+        deadline: The time at which the run times out (seconds); `NEVER` without a timeout.
         told: The reason for which the engine cancelled the run; empty if the engine did not cancel it.
         lineage: The rules that led to the run within its instant, including its own rule; None if the instant had few
             runs (L23).
@@ -262,7 +262,7 @@ class Refusal:
         sure: An entry for each rival whose readiness depends only on work in progress: the activations that do this
             work.
         taken: Whether a run has taken one of the activation's slots.
-        in_doubt: Whether a rival may never become ready. If so, the wait ends at the latest with the rival's patience.
+        in_doubt: Whether a rival may never become ready. The wait for this rival ends at the latest with its patience.
         hopes: Key: a hope of the activation; value: the hope's count (`Horizon.hopes`).
         interests: The groups whose changes may lift the refusal.
         leader: The better activation for which this one waits without examining other rivals (``leaders.py``), or None.
@@ -294,7 +294,7 @@ class Refusal:
 
     @property
     def all_names(self) -> dict[str, Clause]:
-        """The names of the rules that the activation waits for, and those that its leader waits for."""
+        """The entries of `names`, and those of the leader: the rules that the activation waits for, also indirectly."""
         leader = self.leader
         if leader is None or leader.refusal is None:
             return self.names
@@ -302,7 +302,7 @@ class Refusal:
 
     @property
     def bounded(self) -> bool:
-        """Whether the wait is sure to end: when a run frees its slot, or when a rival's patience ends."""
+        """Whether the wait is sure to end: when the run that took a slot ends, or when a rival's patience ends."""
         return self.taken or self.in_doubt
 
     def __bool__(self) -> bool:

@@ -3,7 +3,7 @@
 1. Activations that need no consent start first: their rules write no slot, or all their constraints are detached.
 2. When none of these is left, the other ready activations ask for consent (``consent.py``). Activations with older
    causes ask first. If causes are equal, the activation with the greatest effective utility asks first. By then, the
-   rules of step 1 that never suspend have ended.
+   ``async`` rules of step 1 that never suspend have ended.
 3. When no activation may start, the engine updates the built-in flags. Only the change of ``core:activity`` to true
    comes earlier, before step 1 (``parts.py``).
 
@@ -55,10 +55,10 @@ class Agenda:
         self.time = 0.0
         """The time (seconds) at which the queue was last put in order."""
         self.breakers: list[tuple[tuple[float, int, int], Activation]] = []
-        """The activations that wait only for each other, each with its sort key, the best first."""
+        """A heap of the activations that wait only for each other, each with its sort key. Entries may be outdated."""
 
     def start_free(self) -> None:
-        """Start ready activations that need no consent, in the order of their newest spikes.
+        """Start at most `BATCH` ready activations that need no consent, in the order of their newest spikes.
 
         An activation whose slot predicates (*guards*) have become false is no longer ready.
         """
@@ -91,8 +91,9 @@ class Agenda:
     def consent_round(self) -> None:
         """Let ready activations ask for consent: oldest cause first, and for one cause the best activation first.
 
-        If a rule has started in this round, an activation that may read a slot that the rule writes asks in the next
-        round. By then, the rule has made the writes that precede its first suspension, and the activation sees them.
+        Suppose that a rule has started in this round, and an activation may read a slot that the rule writes. Then the
+        activation starts in the next round at the earliest. By then, the rule has made the writes that precede its
+        first suspension, and the activation sees them.
         """
         state, queue, places = self.state, self.queue, self.places
         line = queue.line
@@ -135,7 +136,7 @@ class Agenda:
             self._break_stalemate()
 
     def settle_flags(self) -> bool:
-        """Update ``core:activity`` and ``core:pressure`` (L22); return whether one has changed."""
+        """Update one built-in flag that is out of date, ``core:pressure`` first (L22). Return whether there was one."""
         state = self.state
         pressure = bool(
             state.benches
@@ -185,7 +186,8 @@ class Agenda:
         """Ask for consent; return whether the activation has it. If not, the activation waits.
 
         A *bench* keeps spikes that share a second spike. Only one of these pairs has an activation, the *head* of the
-        bench (``benches.py``). If the refused activation is the head of a bench, the bench gets a new head.
+        bench (``benches.py``). If the refused activation is the head of a bench, the bench gets a new head, unless the
+        group of the second spike refuses.
         """
         refusal = self.consent.ask(activation)
         if refusal.names:

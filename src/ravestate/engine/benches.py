@@ -9,8 +9,9 @@ activation, the *head* of the bench. The other first spikes stay on the bench, a
 counterpart.
 
 A clause has benches only if no better clause competes with it (`Half.sole`). The clause's activations wait for no
-rival, so a group refuses them only while one of their slots is taken there. If a group refuses the head, the
-engine creates a new head for the next first spike. The new head asks in the same round (`Agenda.consent_round`).
+rival, so a group refuses them only while one of their slots is taken there. If only the first spike's group refuses the
+head, the engine creates a new head for the next first spike. The new head asks in the same round
+(`Agenda.consent_round`). If the counterpart's group refuses, it would refuse every head.
 
 So the pairs ask in the order of their first spikes, the oldest first. In consent, older causal groups go first. The two
 orders agree: a first spike comes from outside or from a detached rule, and so begins a group. Before a group merges,
@@ -82,7 +83,10 @@ class Benches:
             self.check(partner)
 
     def next_heads(self, refused: Activation) -> list[Activation]:
-        """Create a new head for each bench whose head, `refused`, got no consent. Return the new heads that may ask."""
+        """Create a new head for each bench whose head, `refused`, got no consent. Return the new heads that may ask.
+
+        If the counterpart's group refuses, a bench gets no new head.
+        """
         state = self.state
         heads: list[Activation] = []
         for partner in refused.spikes:

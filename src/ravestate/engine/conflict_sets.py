@@ -5,10 +5,10 @@ the rest would lose the spike. So only the best clause (with the greatest utilit
 other clauses form the activation's queue of alternatives. If the activation's run resigns, or fails before it writes,
 the next clause gets an activation.
 
-If there is a tracer, or when a rule retires or is added, the queue *unfolds* into ordinary activations. It also unfolds
-if a rival's utility may lie between the utilities of the clauses (`Consent.is_contested`). The number of each
-activation is fixed from the start, and no signal that an alternative raises can help a rival (`find_conflict_sets`). So
-it does not matter when a queue unfolds. An explanation unfolds nothing.
+If there is a tracer, or when a rule retires or is added, the queue *unfolds* into ordinary activations. It also
+unfolds, for example, if a rival's utility may lie between the utilities of the clauses (`Consent.is_contested`). The
+number of each activation is fixed from the start, and no signal that an alternative raises can help a rival
+(`find_conflict_sets`). So it does not matter when a queue unfolds. An explanation unfolds nothing.
 """
 
 from __future__ import annotations

@@ -2,12 +2,12 @@
 
 The activation asks each causal group of its spikes. A group refuses while a run in the group has taken a slot that the
 activation writes. It also refuses while the group has a *rival*: another clause that writes one of the activation's
-slots, has greater effective utility, and may still become ready. An activation of the rival must hold a spike of the
+slots, is ahead in effective utility, and may still become ready. An activation of the rival must hold a spike of the
 group, or the rival must lack a signal that the group may cause.
 
 If only an input or a rule of another group can make a rival ready, the rival is under *pressure*: it has a limited time
-to become ready, its *patience*. When the patience ends, the activation stops waiting for the rival. A rival gets its
-patience once in each group (L16).
+to become ready, its *patience*. When the patience ends, the activation stops waiting for the rival. Each activation of
+a rival gets its patience once in each group (L16).
 
 A clause without an activation may be a rival, too. A *half* (``halves.py``) keeps first spikes of pairs, without
 activations, for such clauses. `_judge_half` judges these rivals. Each clause also has a *stand-by*, an activation that

@@ -55,7 +55,7 @@ class Cancel:
 
 @dataclass(slots=True)
 class Failed:
-    """An order to log a rule's failure once, with its traceback."""
+    """An order to log, once, a failure of a rule or of a predicate in its conditions."""
 
     rule: str
     exception: Any  # a BaseException; mypyc 2.4 cannot read this name in a dataclass
@@ -78,8 +78,8 @@ class Ended:
     """A report of the outcome of a run, if the engine has `report_ends`.
 
     ``fired`` says whether the run consumed its spikes for the slots that its rule writes. It is false if the run
-    resigned. It is also false if the run failed, or lost its spike by a `Wipe`, before it wrote a slot. An interrupted
-    run has fired, even if it failed afterwards.
+    resigned, failed, or lost its spike by a `Wipe`, before it wrote a slot. An interrupted run has fired, even if it
+    resigned or failed afterwards.
     """
 
     run: int

@@ -80,7 +80,10 @@ class Engine:
             self._rest(parts)  # no rule hears the event
 
     def advance(self, now: float) -> None:
-        """Let time pass until `now` (seconds), deadline by deadline. A time that has passed already changes nothing."""
+        """Let time pass until `now` (seconds), deadline by deadline.
+
+        If `now` is not later than the present time, only handle the deadlines that are due by `now`.
+        """
         if self._parts is not None:
             self._parts.advance(now)
         else:
@@ -151,7 +154,7 @@ class Engine:
 
     @property
     def now(self) -> float:
-        """The time of the latest event or deadline (seconds)."""
+        """The latest time that the engine has reached (seconds)."""
         return self._latest.now
 
     @property

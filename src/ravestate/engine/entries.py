@@ -115,7 +115,7 @@ class Entries:
                 self.forget(partner)
 
     def refuse_for_good(self, spike: Spike, rule: RulePlan) -> None:
-        """Make a rule give a spike up for good."""
+        """Record that a rule gives a spike up for good, and take the spike from its half. Activations keep it."""
         spike.refuse(rule.index)
         if spike.in_halves and len(rule.clauses) == 1:
             for need in rule.clauses[0].needs:

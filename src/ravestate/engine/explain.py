@@ -22,7 +22,7 @@ if TYPE_CHECKING:
 
 @dataclass(frozen=True, slots=True)
 class ClauseState:
-    """A clause: its condition as declared, and its utility and effective utility now (nats).
+    """A clause: its condition as text, its signals and pathways, its utility, and its effective utility now (nats).
 
     `gates` has the text of each slot predicate, and whether the predicate is true now.
     """

@@ -1,4 +1,4 @@
-"""The queue of the ready activations that need no consent: they start in the order of their newest spikes (law L21)."""
+"""The queue of the ready activations that need no consent: they start in the order of their newest spikes (law L24)."""
 
 from __future__ import annotations
 

@@ -56,8 +56,8 @@ class Group:
             a half write no slot, the half's spikes are left out, unless `Half.kin` is true.
         interested: The waiting activations that ask for consent again when something changes in the group
             (`State.dirty`).
-        patience_ends: The rivals under pressure that have no activation yet (L16). Key: the index of the rival's
-            clause; value: the time (seconds) at which the rival's patience ends, possibly in the past.
+        patience_ends: The rivals whose *stand-by* (activation without a spike) came under pressure (L16). Key: the
+            index of the rival's clause; value: the time (seconds) at which the patience ends, possibly in the past.
         roster: An index of the group's `members` by slot and by rule (``roster.py``); None until a large group needs
             it.
         answers: Key: the index of a slot; value: the rule that first finished with the slot, and the number of that
@@ -114,15 +114,14 @@ class Group:
     def writers(self, slots: tuple[int, ...], causes: Causes) -> Iterable[Activation]:
         """Return the members that may write one of the slots, in the order in which they joined.
 
-        A small group has no roster (an index of its members). For a small group, the result is all its members.
+        A small group does not use a roster (an index of its members). The result is then all its members.
         """
         return self.members if self.count <= FEW else self._roster(causes).writers(slots)
 
     def causers(self, slots: tuple[int, ...], causes: Causes) -> Iterable[RulePlan]:
         """Return those of the members' rules that may trigger a rule that writes one of the slots.
 
-        A small group has no roster (an index of its members). For a small group, the result is the rules of all its
-        members.
+        A small group does not use a roster (an index of its members). The result is then the rules of all its members.
         """
         if self.count <= FEW:
             return dict.fromkeys([member.clause.rule for member in self.members])

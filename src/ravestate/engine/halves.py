@@ -16,10 +16,11 @@ number of activations depends on the rule:
 - for a rule that writes no slot, but was added while a spike of its signals was live: also one activation for each
   first spike, because each activation may later lose a spike, and take that live spike instead
 
-To *unfold* an entry is to make its activations. All entries unfold if there is a tracer, and when a rule retires or is
-added. The entries of a group unfold before the group merges. `Consent` unfolds an entry if it must judge the entry's
-clauses one by one. The time of unfolding changes no decision: the numbers of these activations are fixed from the
-start, and no signal that their rules raise can help a rival (`find_halves`). An explanation unfolds nothing.
+To *unfold* an entry is to make its activations. All entries unfold if there is a tracer, in an endless loop, and when a
+rule retires or is added. The entries of a group unfold before the group merges. `Consent` unfolds an entry if it must
+judge the entry's clauses one by one. The time of unfolding changes no decision: the numbers of these activations are
+fixed from the start, and no signal that their rules raise can help a rival (`find_halves`). An explanation unfolds
+nothing.
 """
 
 from __future__ import annotations

@@ -110,8 +110,10 @@ class Holdings:
         return held is None or held.group.root() is spike.group.root()
 
     def look(self, activation: Activation, needs: Iterable[Need]) -> None:
-        """For each detached need without a spike, take the newest spike that fits. Prefer spikes that are old
-        enough."""
+        """For each detached need without a spike, take the newest spike that fits and is old enough.
+
+        If all fitting spikes are too young, take the oldest of them.
+        """
         state = self.state
         for need in needs:
             if not need.detached or not need.bit & activation.missing:
@@ -133,8 +135,8 @@ class Holdings:
             self.update(activation)
 
     def _rematch(self, activation: Activation, need: Need) -> None:
-        """If a live spike fits a need that has lost its spike, take the oldest such spike (L12). A detached need takes
-        the newest."""
+        """If a live spike fits a need that has lost its spike, take the oldest such spike (L12). For a detached need,
+        choose the spike as `look` does."""
         if need.detached:
             self.look(activation, (need,))
         else:
@@ -191,7 +193,7 @@ class Holdings:
             state.free.new.append(activation)
 
     def unready(self, activation: Activation) -> None:
-        """Put a ready or waiting activation back into the state `GATHERING`."""
+        """Put an activation that does not run yet back into the state `GATHERING`."""
         activation.step(LOSE)
         self._unhead(activation)
         activation.ripens = NEVER
@@ -233,8 +235,9 @@ class Holdings:
     def lose(self, activation: Activation, needs: Iterable[Need], reason: str, by: Activation | None = None) -> None:
         """Make an activation give up the spikes of `needs`, and end it if nothing keeps it alive.
 
-        A spike for a non-detached need keeps an activation alive. If all needs of its clause are detached, any spike
-        keeps it alive. `by` is the run that is the cause, or None.
+        An activation that stays alive takes other live spikes instead, if any fit (L12). A spike for a non-detached
+        need keeps an activation alive. If all needs of its clause are detached, any spike keeps it alive. `by` is the
+        run that is the cause, or None.
         """
         needs = [need for need in needs if not need.bit & activation.missing]
         if not needs:

@@ -2,7 +2,8 @@
 
 Read first: docs/explanation/processing-model.md, which explains rivals, causal groups, patience and laws such as L16.
 
-A rival may still become ready if each of its constraints without a spike (its missing *needs*) may yet get one.
+A rival may still become ready if each of its constraints without a spike (its missing *needs*) may yet get one. Each of
+its slot predicates must be true, or work in progress may yet make it true.
 
 The horizon of a group is the set of signals that rules of the group may yet cause. A rule may cause a signal if the
 rule runs, or if its constraints are met or may yet be met. So whether a signal may come depends on whether other
@@ -80,7 +81,8 @@ class Horizon:
             see ``activation.py``) and the index of a rule or signal. The value is a count. For `OUTSIDE`, the count is
             a limit. If one activation of a rule changes, and the rule has more than this many other activations, the
             results stay the same. For the other kinds, the count is 0.
-        recheck: The time (seconds) at which the first of the spikes on which the results rest becomes too old.
+        recheck: The time (seconds) at which the first spike that the results need for a detached constraint becomes too
+            old.
     """
 
     __slots__ = (

@@ -1,9 +1,9 @@
 """Leaders: when one activation is refused, the activations behind it need not examine every rival.
 
-An activation is *behind* another if its clause has less effective utility. Suppose that a thousand activations are
-ready to write one slot, and the group refuses the best one. The group would refuse all others too, because the best one
-is a rival of each. So only the best one, the *leader*, asks in full: it examines every rival (``consent.py``). The
-others *follow*: they wait for the leader, and examine no other rival.
+An activation is *behind* another if its clause comes later in the order of effective utility. Suppose that a thousand
+activations are ready to write one slot, and the group refuses the best one. The group would refuse all others too,
+because the best one is a rival of each. So only the best one, the *leader*, asks in full: it examines every rival
+(``consent.py``). The others *follow*: they wait for the leader, and examine no other rival.
 
 An activation cannot follow if the utility of a rival lies between the leader's and its own. The leader did not examine
 this rival. The activation must examine it: the rival may need pressure, or may lead to a further rival (law L16).

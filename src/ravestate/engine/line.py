@@ -13,8 +13,8 @@ class Line:
     """A queue of *places*. A place is a tuple: a sort key, then the activation. The least place is the first.
 
     Attributes:
-        line: The places that joined at the front of the queue, in reverse order: the first place is at the end. This
-            list is empty only if the queue is empty.
+        line: The places that joined at the front of the queue, or came from the heap later. They are in reverse order:
+            the first place is at the end. This list is empty only if the queue is empty.
     """
 
     __slots__ = ("_between", "line")

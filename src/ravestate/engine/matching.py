@@ -131,7 +131,10 @@ class Matching:
         origin: Any = None,
         lineage: Lineage | None = None,
     ) -> None:
-        """Create a spike, and offer it to the activations that lack it (L11, L12)."""
+        """Create a spike, and offer it to the activations that lack it (L11, L12).
+
+        If no rule can hear the signal, only the trace and the runtime learn of the spike.
+        """
         state = self.state
         state.spikes += 1
         if run is not None and run.told == "wiped" and parents:

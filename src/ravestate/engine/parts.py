@@ -33,7 +33,10 @@ from ravestate.policy.policy import Policy
 
 
 class Parts:
-    """The parts of one working engine. They share `state`. Only `Agenda` and `Leaders` have tables of their own."""
+    """The parts of one working engine, with the `State` that they share.
+
+    Only `Agenda`, and `Leaders` inside `Consent`, have tables of their own.
+    """
 
     __slots__ = ("agenda", "halves", "holdings", "matching", "runs", "slots", "state")
 
@@ -51,7 +54,7 @@ class Parts:
     # ------------------------------------------------------------------------------------ time and effects
 
     def pass_time(self, now: float) -> None:
-        """Let time pass until `now` (seconds), before an event. A time that has passed already changes nothing.
+        """Let time pass until `now` (seconds), before an event. If `now` is not later than the present, do nothing.
 
         Raises:
             EngineError: The time is NaN.
@@ -66,7 +69,10 @@ class Parts:
             raise EngineError("the time is not a number of seconds: it is NaN")
 
     def advance(self, now: float) -> None:
-        """Let time pass until `now` (seconds), deadline by deadline. A time that has passed already changes nothing."""
+        """Let time pass until `now` (seconds), deadline by deadline.
+
+        If `now` is not later than the present time, only handle the deadlines that are due by `now`.
+        """
         state = self.state
         entry = state.deadlines.pop(now)
         while entry is not None:
@@ -112,7 +118,8 @@ class Parts:
         return out
 
     # ------------------------------------------------------------------------------------ the commonest events
-    # The runner calls these methods, after `Engine.parts_at`, if no journal records the events.
+    # In the loop's thread, if no journal records events, the runner calls these methods directly, after
+    # `Engine.parts_at`. Otherwise, it makes an event, whose handler does the same.
 
     def write(self, slot: str, value: Any, run: int | None, origin: Any = None) -> None:
         """Handle the event `Write` now; `run` is the number of the run, or None for code outside the rules."""
@@ -198,7 +205,7 @@ class Parts:
             looking = [clause for clause in plan.clauses if clause.asks_detached]
             for need in (need for clause in looking for need in clause.needs if need.detached):
                 for spike in state.live.get(need.signal.index, ()):
-                    if spike.born + need.min_age > state.now:  # the spike's birth set these times for older rules only
+                    if spike.born + need.min_age > state.now:  # its birth set such times for older rules only
                         state.deadlines.add(spike.born + need.min_age, LOOK, (need, spike))
 
     def _retire(self, rule: RulePlan) -> None:

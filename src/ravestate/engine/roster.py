@@ -1,9 +1,9 @@
 """A roster: an index that finds the members of a large causal group by slot or by rule.
 
 A causal group is a set of spikes with one cause. Its members are the activations that hold these spikes. A thousand
-rules may hear one input. When the engine looks for the members that write one slot, there are only a few of them. A
-roster finds these without a search. A group of few members needs no roster. The engine makes the roster of a larger
-group at the first such lookup. From then on, `Group.join` and `Group.part` keep the roster up to date.
+rules may hear one input, but often only a few of them write a certain slot. A roster finds these few without a search.
+A group of few members needs no roster. The engine makes the roster of a larger group at the first such lookup. From
+then on, `Group.join` and `Group.part` keep the roster up to date.
 """
 
 from __future__ import annotations

@@ -165,7 +165,10 @@ class Runs:
             state.fail(rule, failure, signal=not on_error, lineage=state.loops.lineage(run), origin=run.origin)
 
     def _begin_recovery(self, rule: RulePlan) -> None:
-        """Record that a rule with a cooldown has run. The activations whose order this changes ask again (L9, L15)."""
+        """Record that a run of a rule with a cooldown has fired.
+
+        The activations whose order this changes ask again (L9, L15).
+        """
         state = self.state
         if state.ran is NOTHING:
             state.ran = state.standing.ran = {}

@@ -54,7 +54,7 @@ class Slots:
     def _change(
         self, slot: SlotPlan, value: Any, parents: tuple[Spike, ...], run: Activation | None, origin: Any = None
     ) -> None:
-        """Set the value of a value or flag slot, and raise its signals (L2, L13)."""
+        """Set the value of a value or flag slot, and raise its signals if something may hear them (L2, L13)."""
         state, matching = self.state, self.matching
         state.values[slot.index] = value
         if state.tracer is not None:

@@ -15,7 +15,7 @@ if TYPE_CHECKING:
 def snapshot(engine: Engine) -> dict[str, Any]:
     """Return all live objects of an engine as dictionaries, lists, strings and numbers.
 
-    A payload or value of any other type appears as its ``repr``.
+    `plain` converts payloads and values of other types.
 
     Returns:
         ``now`` (seconds), ``slots``, ``spikes``, ``activations``, ``groups``, ``dropped``, ``retired``,
@@ -81,7 +81,7 @@ def snapshot(engine: Engine) -> dict[str, Any]:
 
 
 def plain(value: Any) -> Any:
-    """Return a value as data that JSON can carry: a set becomes a list, and any unknown type its ``repr``."""
+    """Return a value as data that JSON can carry: a set or tuple becomes a list, and any unknown type its ``repr``."""
     if value is None or isinstance(value, (bool, int, float, str)):
         return value
     if isinstance(value, Mapping):

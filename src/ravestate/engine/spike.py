@@ -120,7 +120,10 @@ class Spike:
         self.refused.add(rule)
 
     def descends_from(self, rule: int) -> bool:
-        """Return whether a run of the rule is among the causes of the spike. If so, the rule may not take it (L19)."""
+        """Return whether a run of the rule is among the causes of the spike.
+
+        If so, the rule may take the spike only for a detached need (L19).
+        """
         return any(spike.rule == rule for spike in self._lineage())
 
     def comes_from(self, signal: str) -> bool:

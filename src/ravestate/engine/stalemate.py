@@ -18,7 +18,8 @@ def stalemate(consent: Consent, refused: Iterable[Activation], known: Stuck | No
 
     Args:
         consent: The part of the engine that asks for consent.
-        refused: The activations that were refused since the last search. Each new stalemate has at least one of these.
+        refused: The activations with which the search begins (`State.refused`). Each new stalemate has at least one of
+            these.
         known: The activations that earlier searches found. They count as doing nothing.
     """
     waiting = consent.state.waiting.keys()

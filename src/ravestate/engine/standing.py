@@ -47,7 +47,10 @@ class Standing:
         return clause.base * self.recovery(clause)[0] if clause.rule.cooldown else clause.base
 
     def lead(self, one: Clause, other: Clause) -> float:
-        """Return by how many nats `one` is ahead of `other` now; 0 if only weights or declaration order decide."""
+        """Return by how many nats `one` is ahead of `other` now.
+
+        The result is 0 if `one` is not ahead, or if only weights or the order of declaration decide.
+        """
         worth = one.utility * one.rule.weight * self.recovery(one)[0]
         return max(0.0, lead(worth, other.utility * other.rule.weight * self.recovery(other)[0]))
 
@@ -82,7 +85,7 @@ class Standing:
         return (ahead or first) > 0, (soon or first) > 0
 
     def crossing(self, one: Clause, other: Clause) -> float:
-        """Return the time (seconds) at which recovery next changes the order of two clauses; `inf` for never.
+        """Return the time (seconds) at which recovery next may change the order of two clauses; `inf` for never.
 
         The result depends on the times of the last runs, not on the present time. So all activations that wait for the
         crossing get exactly the same time.

@@ -121,8 +121,9 @@ class State(Memory):
         self.lacking: dict[Need, dict[Activation, None]] = {}
         """Need → the activations that hold a spike, but lack one for this need."""
         self.halves: dict[Half, OrderedDict[Spike, int]] = NOTHING
-        """Half → the spikes that it holds without an activation, oldest first (``halves.py``). Each spike has a number
-        *n*: its activations, if the engine makes them, get the numbers from *n* + 1 on."""
+        """Half → the spikes that it holds without an activation, oldest first (``halves.py``). Spikes on a bench that
+        already share a second spike are left out. Each spike has a number *n*: its activations, if the engine makes
+        them, get the numbers from *n* + 1 on."""
         self.rows: dict[Half, Row] = NOTHING
         """Half whose spikes are slow to search → an index of these spikes (``row.py``)."""
         self.pools: dict[Half, Bench] = NOTHING
@@ -139,7 +140,7 @@ class State(Memory):
         first n clauses of the half, the best first, are under pressure. Earlier pairs have smaller counts. The time is
         the end of the patience of those clauses that no earlier pair includes (law L16)."""
         self.gated: dict[Activation, None] = NOTHING
-        """Activations that hold all their spikes, but have a slot predicate that is false."""
+        """Activations that hold all their spikes, all old enough, but have a slot predicate that is false."""
         self.free = Free()
         """The ready activations that need no consent."""
         self.asking: dict[Activation, None] = {}
@@ -149,14 +150,14 @@ class State(Memory):
         self.waiting: dict[Activation, None] = {}
         """Ready activations that were refused consent."""
         self.refused: dict[Activation, None] = {}
-        """The activations refused since the last search for a *stalemate*: activations that wait only for each
-        other."""
+        """The activations with which the next search for a *stalemate* begins: those that were refused, or whose waits
+        may have changed, since the last search. In a stalemate, activations wait only for each other."""
         self.stuck: Stuck | None = None
         """The activations that were found to wait only for each other (``stalemate.py``); None before the first of
         them."""
         self.dirty: dict[Group, None] = {}
-        """The groups that have changed: a run or a patience has ended, or a member has joined, changed or left. The
-        activations whose refusals depend on these groups ask again (`Waits.wake`)."""
+        """The groups with a change that may lift a refusal: e.g. a run or a patience has ended, or a member has joined,
+        changed or left. The activations whose refusals depend on these groups ask again (`Waits.wake`)."""
         self.hoping: dict[tuple[int, int], dict[Activation, None]] = NOTHING
         """Hope → the waiting activations that have it. A hope is something outside an activation's groups that may lift
         the activation's refusal (``activation.py``)."""
@@ -205,7 +206,7 @@ class State(Memory):
 
     @property
     def at_rest(self) -> bool:
-        """Whether nothing is live, the runtime has taken all effects, and no tracer listens."""
+        """Whether nothing is live or due, the runtime has taken all effects, and no tracer listens."""
         if self.live or self.active or self.out or self.errors or self.faults or self.tracer is not None:
             return False
         if self.values.get(self.activity.index) or self.values.get(self.pressure.index):
@@ -240,7 +241,7 @@ class State(Memory):
     # ------------------------------------------------------------------------------------ spikes
 
     def is_live(self, spike: Spike) -> bool:
-        """Return whether a spike is live: something holds it, or detached needs may look at it."""
+        """Return whether a spike is live: not withdrawn, and something holds it or detached needs may look at it."""
         live = self.live.get(spike.signal.index)
         return live is not None and spike in live
 
@@ -252,8 +253,10 @@ class State(Memory):
         return None
 
     def fits(self, need: Need, spike: Spike) -> bool:
-        """Return whether a live spike may meet a need: its age and payload fit, and the need's rule may still take
-        it."""
+        """Return whether a live spike may meet a need, now or when it is old enough.
+
+        The spike must not be too old, its payload must fit, and the need's rule must still be allowed to take it.
+        """
         rule = need.clause.rule
         if spike.born + need.max_age <= self.now and (need.max_age or spike.born < self.now):
             return False

@@ -16,7 +16,7 @@ from typing import Any
 
 @dataclass(frozen=True, slots=True)
 class Born:
-    """A spike was born; ``source`` is the activation whose run raised it, or 0 if code outside the rules raised it."""
+    """A spike was born; ``source`` is the activation whose run raised it, or 0 if no run raised it."""
 
     time: float
     spike: int
@@ -48,7 +48,7 @@ class Merged:
 
 @dataclass(frozen=True, slots=True)
 class Set:
-    """A slot got a value; ``run`` is the activation whose run wrote it, or 0 if code outside the rules wrote it."""
+    """A slot got a value; ``run`` is the activation whose run wrote it, or 0 if no run wrote it."""
 
     time: float
     slot: str
@@ -79,7 +79,7 @@ class GaveUp:
     spike: int
     signal: str
     reason: str
-    by: str = ""  # the rule that consumed the spike, or resigned; empty if there is none
+    by: str = ""  # the rule that consumed the spike, or resigned; empty if there is none, or if it is unknown
     run: int = 0  # the activation of the rule `by`; 0 if there is none, or if it is unknown
 
 

@@ -27,7 +27,8 @@ class Conjunction:
 def normal_form(condition: Condition) -> tuple[Conjunction, ...]:
     """Bring a condition of any depth into disjunctive normal form, in declaration order, without duplicates.
 
-    If the result has more than `MAX_CLAUSES` conjunctions, or a part is not a condition, raise a `DeclarationError`.
+    Raise a `DeclarationError` if a part is not a condition. Raise it also if the condition, or a part of it, has more
+    than `MAX_CLAUSES` conjunctions, including duplicates.
     """
     parts = list(_inner_first(condition))
     _check(condition, parts)

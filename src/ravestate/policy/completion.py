@@ -5,7 +5,8 @@ has the empty alternative. A pathway of a clause is a set of signals. It holds t
 signal in the pathway, one alternative of that signal.
 
 A set of signals is an integer here. Bit *n* stands for the signal at *place* *n*. The places of causes come before
-those of their effects. Except in cycles, the signal of a set's highest bit causes no other signal of the set.
+those of their effects, except in cycles and for effects that have the empty alternative. Apart from these, the signal
+of a set's highest bit causes no other signal of the set.
 """
 
 from __future__ import annotations

@@ -1,6 +1,7 @@
-"""The relations between the records of a policy: listeners, kin needs, conflict sets and halves.
+"""The relations between the records of a policy.
 
-A *need* is one constraint of a clause. The functions explain the other terms.
+A *need* is one constraint of a clause. The functions find the needs that listen to each signal, needs that are kin,
+clauses without rivals, conflict sets, and halves. They explain these terms.
 """
 
 from __future__ import annotations
@@ -13,9 +14,10 @@ from ravestate.policy.model import Clause, Half, Need, RulePlan, SignalPlan, Slo
 
 
 def connect(signals: Sequence[SignalPlan], slots: Iterable[SlotPlan], rules: Iterable[RulePlan]) -> None:
-    """Set the fields of signals and slots that depend on all rules.
+    """Set the fields of signals and slots that depend on the conditions and effects of all rules.
 
-    Signals: `listeners`, `watchers`, `retain` and `input` (law L8). Slots: `guarded` and `heard`.
+    Signals: `listeners` and `watchers` (the needs for the signal in conditions and in `until` conditions), `retain`,
+    and `input` (law L8). Slots: `guarded` and `heard`.
     """
     raised = {signal for rule in rules for signal in rule.raises}
     listeners: list[list[Need]] = [[] for _ in signals]
@@ -43,7 +45,8 @@ def connect(signals: Sequence[SignalPlan], slots: Iterable[SlotPlan], rules: Ite
 def find_kin(rules: Iterable[RulePlan], causes: Causes) -> None:
     """Set the kin of each need: the needs of its clause that must hold spikes of the same causal group (L12).
 
-    Needs are kin if their pathways share a signal, or if their signals belong to one slot. Kin of kin are kin, too.
+    Non-detached needs are kin if their pathways share a signal, or if their signals belong to one slot. Kin of kin are
+    kin, too. Pathways share a signal if they share a *root*, a signal or cycle where they begin (`Causes.roots`).
     """
     for rule in rules:
         for clause in rule.clauses:
@@ -92,11 +95,11 @@ def find_conflict_sets(signals: Sequence[SignalPlan], causes: Causes) -> None:
 
     One spike of the signal makes such a clause ready. The clauses write the same slots, and their order never changes.
     So the first clause goes before the others. The engine needs an activation of the next clause only if the run of
-    the first resigns or fails (``engine/conflict_sets.py``).
+    the first resigns, or fails before it writes (``engine/conflict_sets.py``).
 
     A signal is *helpful* if it leads to a rule that writes a slot, or to a slot predicate (`Causes.helpful`). A clause
-    belongs to no conflict set if its rule may raise a helpful signal. Other activations may have to wait for that
-    signal (L16), and only an activation can show that the signal may come. So such a clause always gets an activation.
+    belongs to no conflict set if its rule may raise a helpful signal. Other activations wait as long as an activation
+    may raise the signal that their rival lacks (L16). So such a clause always gets an activation of its own.
     """
     helpful = causes.helpful
     for signal in signals:
@@ -114,9 +117,10 @@ def find_conflict_sets(signals: Sequence[SignalPlan], causes: Causes) -> None:
 def find_halves(signals: Sequence[SignalPlan], causes: Causes) -> None:
     """Set the halves of each signal, and its `others`: the listeners that are in no conflict set and in no half.
 
-    A half collects the needs for one signal, from clauses that have two needs. A clause with only the first of its two
-    spikes cannot run yet. So the engine keeps the first spikes in a table, without activations (``engine/halves.py``).
-    A clause belongs to no half if its rule may raise a helpful signal; `find_conflict_sets` explains the reason.
+    A half collects needs for one signal that the engine can treat alike (`_likeness`), from plain clauses with two
+    needs (`_is_plain`). A clause with only the first of its two spikes cannot run yet. So the engine keeps the first
+    spikes in a table, without activations (``engine/halves.py``). A clause belongs to no half if its rule may raise a
+    helpful signal; `find_conflict_sets` explains the reason.
     """
     helpful = causes.helpful
     best = _best_writers(causes)
@@ -134,9 +138,10 @@ def find_halves(signals: Sequence[SignalPlan], causes: Causes) -> None:
 
 
 def _best_writers(causes: Causes) -> dict[tuple[int, int], Clause]:
-    """Return the best clause that writes a slot, for each pair of a slot and a part of the policy.
+    """Return, for each pair of a slot and a part of the policy, the best clause there that writes the slot.
 
-    A part is a set of signals whose spikes may share a causal group (`Causes.parts`).
+    A part is a set of signals where pathways begin, and whose effects may share a causal group (`Causes.parts`). A
+    clause is in each part from which it may take spikes.
     """
     best: dict[tuple[int, int], Clause] = {}
     for rule in causes.rules:
@@ -161,7 +166,10 @@ def _is_sole(clause: Clause, best: dict[tuple[int, int], Clause], causes: Causes
 
 
 def _is_plain(clause: Clause) -> bool:
-    """Return whether a clause is the only one of its rule, and becomes ready as soon as it has two spikes."""
+    """Return whether a clause is plain: the only one of its rule, and ready as soon as it has spikes of two signals.
+
+    A plain clause is also neither cyclic nor reflexive (`Clause`), and its rule has no cooldown.
+    """
     rule = clause.rule
     return (
         len(clause.needs) == 2

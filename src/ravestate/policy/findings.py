@@ -17,7 +17,7 @@ from ravestate.policy.source import Source, acts_of, undeclared
 
 BREAKING = frozenset(
     {"undeclared", "unknown", "await", "assignment"}
-)  # findings of these kinds make a rule fail at run time
+)  # findings of these kinds mean that a rule fails at run time, or does not do what its source says
 
 MAX_PEERS = 64
 """The search for ties compares each rule with at most this many other rules, those declared first.
@@ -48,7 +48,7 @@ class Finding:
 
 
 def find_all(policy: Plans, source: Source | None = None) -> tuple[Finding, ...]:
-    """Return all findings, at most one of each kind for a rule. Findings that make a rule fail at run time come first.
+    """Return all findings, at most one of each kind for a rule. Findings of the kinds in `BREAKING` come first.
 
     `source` returns the source of a function. Without it, the findings that need source code are left out.
     """

@@ -1,8 +1,9 @@
 """The least pathway of a clause (law L9): the pathway with the least information.
 
-An *alternative* of a signal is a set of signals that together may cause it; an input also has the empty alternative. A
-pathway is a set that holds an alternative of each of its signals. The *cost* of a set is its information. A set of
-signals is an integer with one bit for each signal; `Completion` gives each signal its *place*, the number of this bit.
+An *alternative* of a signal is a set of signals that together may cause it. An input, or a signal without causes, also
+has the empty alternative. A pathway is a set that holds an alternative of each of its signals. The *cost* of a set is
+its information. A set of signals is an integer with one bit for each signal; `Completion` gives each signal its
+*place*, the number of this bit.
 
 The search begins with the set of the clause's own signals. Each step extends the sets of the previous step. In each
 set, it takes the signal with the highest bit that still lacks an alternative, and tries each alternative of this

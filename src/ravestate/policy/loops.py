@@ -3,7 +3,8 @@
 In a loop, each rule has a clause whose signals come from rules of the loop, and at least one rule or constraint is
 detached. Without detachment, the causal group ends the loop (L19). A clause with a ``min_age`` or a predicate is not
 part of a loop here, because it may end the loop. A rule that takes time is not part of a loop either. A rule takes time
-if it awaits something. A plain function takes time if it uses a value that may block: one whose type is not in `QUICK`.
+if it awaits something. A plain function takes time if it uses a value that may block: one whose type is not in `QUICK`,
+and that is no module of Ravestate.
 """
 
 from __future__ import annotations
@@ -91,7 +92,8 @@ def _wanted(clause: Clause) -> list[Need]:
 def _raised(policy: Plans, rule: RulePlan) -> list[int]:
     """Return the indices of the signals that a rule may raise, and that may immediately start the next rule of a loop.
 
-    The signals of flags are left out: writing the present value of a flag raises no signal.
+    The signals of flags are left out: writing the present value of a flag raises no signal. The only signal
+    of any other slot that counts is `changed`.
     """
     changes = [policy.slot_plans[s].signals[0].index for s in rule.slots if not policy.slot_plans[s].is_flag]
     return [*rule.emits, *changes]

@@ -59,8 +59,8 @@ class SignalPlan:
     watchers: tuple[Need, ...] = ()
     """The needs for this signal in `until` conditions (L21)."""
     retain: float = -1.0
-    """The age (seconds) up to which detached needs can see a spike that nothing holds; negative if there are no such
-    needs."""
+    """The age (seconds) up to which detached needs can see a spike that nothing holds. Only clauses that have
+    non-detached needs as well count; the age is negative if there are none."""
 
     def __post_init__(self) -> None:
         self.name = self.signal.name

@@ -16,8 +16,8 @@ from ravestate.errors import nearest
 class Numbers:
     """Checks the numeric arguments of rules, and replaces settings with their values.
 
-    It adds a fault to `faults` for each argument out of range, and for each missing setting. `refers` is true if a rule
-    refers to a setting.
+    It adds a fault to `faults` for each argument out of range, and for each setting that is missing or is no number.
+    `refers` is true if a rule refers to a setting.
     """
 
     def __init__(self, modules: Sequence[Module], settings: Mapping[str, Any], faults: list[str]) -> None:

@@ -2,7 +2,7 @@
 
 An *alternative* of a signal is a set of signals that together may cause it. To make a pathway of a signal, choose one
 of its alternatives, and one pathway of each signal in this alternative. The union of the chosen pathways, together with
-the signal itself, is a pathway of the signal.
+the signal itself, is a pathway of the signal. The signal alone is a pathway if it is an input or has no causes.
 
 The search walks from a signal to its causes, and notes its *way*: the signals that it has passed. The way ends at a
 signal that it has passed before, because the causes form a cycle there. So the pathways of a signal depend on the way

@@ -104,7 +104,8 @@ class Policy(Plans):
 
         Args:
             source: A function that returns the source of a rule's function, such as ``inspect.getsource``. With it, the
-                findings also name undeclared reads, writes and emits, unknown names, and a forgotten ``await``.
+                findings also name undeclared acts (e.g. reads and writes), unknown names, a forgotten ``await``, and a
+                slot that the function replaces.
         """
         from ravestate.policy.findings import find_all
 

@@ -2,13 +2,13 @@
 that the function replaces.
 
 An act is a read, a write, an emit or the use of a payload. This file checks an act only if the function's globals or
-closure hold the slot or signal. All other acts are checked when the rule runs (law L3), e.g. an act on a name that the
-function itself binds.
+closure lead to the slot or signal. All other acts are checked when the rule runs (law L3), e.g. an act on a name that
+the function itself binds.
 
-Guarded code, too, is checked only when the rule runs. Code is guarded if it is in a branch whose test uses a boolean
-constant, ``hasattr`` or a variable of an enclosing function. For other values of this variable, the enclosing function
-may make rules with other declarations. The body of a ``try`` that handles the error of a missing name is guarded as
-well.
+Guarded code, too, is checked only when the rule runs. Code is guarded if it is in a branch whose test uses a global
+boolean, ``hasattr`` or a variable of an enclosing function. For other values of this variable, the enclosing function
+may make rules with other declarations. If such a branch returns or raises, the code after it is guarded as well. So is
+the body of a ``try`` that handles the error of a missing name.
 """
 
 from __future__ import annotations
@@ -73,7 +73,10 @@ def acts_of(rule: RulePlan, source: Source) -> Acts:
 
 
 def undeclared(rule: RulePlan, acts: Acts) -> Iterator[str]:
-    """Yield a phrase for each kind of act that the rule does not declare, with the argument that would declare it."""
+    """Yield a phrase for each kind of act that the rule does not declare, with the argument that would declare it.
+
+    Yield also a phrase for each payload of a signal that is not in the rule's condition.
+    """
     declared = rule.rule
     kinds: tuple[tuple[str, dict[Any, int], Iterable[Any], Iterable[Any]], ...] = (
         ("reads", acts.reads, declared.reads, (*declared.reads, *declared.writes, *acts.writes)),
