@@ -63,7 +63,7 @@ class Bench(contextlib.ExitStack):
         return environments.reference(self.progress)
 
     def progress(self, text: str) -> None:
-        """Print progress on the error stream."""
+        """Print progress on the error stream; leave the rounds out unless the stream is a terminal."""
         if sys.stderr.isatty():
             print(f"\r\033[K{self.question}: {text}", end="", file=sys.stderr, flush=True)
         elif not text.startswith("round"):

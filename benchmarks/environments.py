@@ -1,7 +1,7 @@
 """The environments of the peers, in a folder that git ignores.
 
-The peers cannot use this project's environment, because the reference implementation has the same import name as this
-project.
+The reference implementation cannot use this project's environment, because both have the same import name. The other
+peers have environments of their own as well.
 """
 
 from __future__ import annotations

@@ -34,11 +34,11 @@ class Figure:
     Attributes:
         question: The question's name on the command line.
         what: The measured quantity.
-        unit: "s", "B", "core" (share of one core) or "" (a count).
+        unit: "s", "B", "core" (a share, for example of one core) or "" (a count).
         ours: Our figure, in that unit.
         against: The peer, the floor, or another case of ours, for comparison.
         theirs: The figure of `against`, in the same unit.
-        ratio: Ours divided by theirs, taken in each repetition.
+        ratio: Ours divided by theirs, taken in each repetition; None without a comparison, or if theirs is 0.
         target: The target in words; empty without a claim.
         reached: Whether the target is reached; None without a claim.
         failed: The reason why there is no figure; empty if there is one.

@@ -23,16 +23,19 @@ def as_table(figures: Iterable[Figure]) -> str:
 
 
 def write_json(path: Path, machine: str, figures: Iterable[Figure]) -> None:
-    """Write all figures as JSON, unrounded: seconds, bytes, shares of a core."""
+    """Write all figures as JSON, unrounded: seconds, bytes, shares, counts."""
     document = {"machine": machine, "figures": [asdict(figure) for figure in figures]}
     path.write_text(json.dumps(document, indent=1) + "\n", encoding="utf-8")
 
 
 def write_page(path: Path, machine: str, figures: Sequence[Figure]) -> None:
-    """Put the table of each question into a Markdown page that has the comment ``<!-- figures of QUESTION -->``.
+    """Put the table of each question into a Markdown page, after the comment ``<!-- figures of QUESTION -->``.
+
+    The table replaces everything up to the comment ``<!-- end of the figures -->``. If the page lacks the comments of a
+    question, leave that question out.
 
     Raises:
-        ValueError: The page has such a comment for none of the questions.
+        ValueError: The page has such comments for none of the questions.
     """
     page = path.read_text(encoding="utf-8")
     found = False
@@ -68,7 +71,7 @@ def _line(cells: Sequence[str], widths: Sequence[int]) -> str:
 
 
 def value_text(spread: Spread | None, unit: str) -> str:
-    """Return a median with its unit."""
+    """Return a median with its unit; an empty text without a spread."""
     if spread is None:
         return ""
     value = spread.median

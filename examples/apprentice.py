@@ -41,7 +41,7 @@ async def learn(ctx: rs.RuleContext) -> None:
 
 @module.rule(when=rawio.input.changed, writes=rawio.output)
 async def puzzled(ctx: rs.RuleContext) -> None:
-    """Answer when no lesson fits."""
+    """Answer when no other rule does."""
     ctx[rawio.output] = "Nobody has told me what to say to that."
 
 

@@ -15,7 +15,7 @@ class Settings(rs.Settings):
     question: str = "Which planet is nearest to the sun?"
     answer: str = "Mercury"
     again_after: float = 10.0
-    """Seconds of silence after which the question is asked again."""
+    """Seconds from the question until `ask` is ready to repeat it. Then `judge` has its patience (1 s) to get an answer."""
 
 
 module = rs.Module("quiz", requires=[rawio], settings=Settings)

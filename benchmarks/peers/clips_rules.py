@@ -17,7 +17,8 @@ TEXT = "(slot text (type STRING))"
 
 
 class Agent:
-    """An environment with a chain of rules (see ``questions/answer.py``). `said` has the answers."""
+    """An environment with a chain of rules (see ``questions/answer.py``). `said` has the answers to the
+    last input."""
 
     def __init__(self, k: int, style: str, unrelated: int = 0) -> None:
         self.env = env = clips.Environment()

@@ -13,7 +13,7 @@ Seconds = float
 
 
 class Agent:
-    """A module with a chain of rules (see ``questions/answer.py``). `said` has the answers.
+    """A module with a chain of rules (see ``questions/answer.py``). `said` has the answers to the last input.
 
     Args:
         k: The length of the chain.

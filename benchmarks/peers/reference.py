@@ -22,7 +22,7 @@ serial = 0  # the modules live in one global registry, so each module needs a na
 
 
 class Agent:
-    """A context with a chain of rules (see ``questions/answer.py``). `said` has the answers."""
+    """A context with a chain of rules (see ``questions/answer.py``). `said` has the answers to the last input."""
 
     def __init__(self, k: int, unrelated: int) -> None:
         global serial

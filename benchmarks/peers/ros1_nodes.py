@@ -60,12 +60,12 @@ def talk(count: int) -> list[Seconds]:
 
 
 def numbers(count: int, rate: float) -> None:
-    """Publish numbers on /numbers from now on."""
+    """When there is a subscriber, begin to publish `count` numbers on /numbers, `rate` a second."""
     _pace(rospy.Publisher("/numbers", Int32, **OPTIONS), count, rate, lambda number: number)
 
 
 def images(count: int, rate: float) -> None:
-    """Publish images on /images from now on."""
+    """When there is a subscriber, begin to publish `count` images on /images, `rate` a second."""
     size = 3 * WIDTH * HEIGHT
     head = struct.pack("<IIII", 0, 0, 0, 0) + struct.pack("<III", HEIGHT, WIDTH, 4) + b"rgb8\0"
     image = Image(head + struct.pack("<II", 3 * WIDTH, size) + bytes(size))

@@ -59,12 +59,12 @@ def talk(count: int) -> list[Seconds]:
 
 
 def numbers(count: int, rate: float) -> None:
-    """Publish numbers on /numbers from now on."""
+    """When there is a subscriber, begin to publish `count` numbers on /numbers, `rate` a second."""
     _pace(node.create_publisher(Int32, "/numbers", DEEP), count, rate, lambda number: Int32(data=number))
 
 
 def images(count: int, rate: float) -> None:
-    """Publish images on /images from now on."""
+    """When there is a subscriber, begin to publish `count` images on /images, `rate` a second."""
     image = Image(height=HEIGHT, width=WIDTH, encoding="rgb8", step=3 * WIDTH, data=bytes(3 * WIDTH * HEIGHT))
     _pace(node.create_publisher(Image, "/images", QoSProfile(depth=100)), count, rate, lambda number: image)
 

@@ -183,7 +183,7 @@ def narrator() -> rs.Module:
 
 
 def conversation(pcm: bytes, output: Path | None = None, record: Any = None, **settings: Any) -> list[Said]:
-    """Hold a conversation between a microphone's track and the narrator."""
+    """Hold a conversation between a microphone's track and the narrator; return the utterances of both."""
     given = {"model": "tiny.en", "voice": "piper", "captions": 0, **settings}
     with tempfile.TemporaryDirectory() as folder:
         file = Path(folder) / "in.wav"
@@ -197,7 +197,7 @@ class Decision:
 
     Attributes:
         time: The moment: seconds on the track's time line.
-        end: The end of the speech in the turn.
+        end: The end of the speech in the turn; if the sound is not an utterance, the same as `time`.
         text: The words, or the reason why the sound is not an utterance.
     """
 

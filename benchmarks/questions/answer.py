@@ -1,8 +1,8 @@
 """How long until an input is answered?
 
-All contestants do the same work. A chain of k rules follows an input; each rule raises the next signal. An answering
+All rule engines do the same work. A chain of k rules follows an input; each rule raises the next signal. An answering
 rule on the last signal and a fallback rule on the input compete for one output. For every input, each contestant
-checks that the answering rule answers and the fallback stays quiet.
+except the floor checks that the answering rule answers and the fallback stays quiet.
 """
 
 from __future__ import annotations

@@ -1,13 +1,13 @@
 """What does ten times as much work cost?
 
-Each workload runs on the bare engine, whose rules do nothing. It runs at one size and at ten times that size:
+Each workload runs on the bare engine. Its rules do nothing, or only raise a signal. It runs at one size and at ten times that size:
 
 - Pairs: n spikes of each of two signals, for a rule `a & b`. The rule writes nothing, or it writes a slot.
 - Halves: for a rule `a & b`, n spikes of `a` wait for a spike of `b`. At the end, a single spike of `b` comes.
 - Topics: an input among n rules `input & topic_i`. The topics are inputs, or a classifier raises them.
 - Fallbacks: an input among n rules `input & topic_i` and n rules on the input alone.
 - Stalemates: n inputs, each of which makes two pairs of rules wait for each other.
-- Burst: n spikes at once, for a rule that writes a slot and one that writes none.
+- Burst: n spikes at once, for one rule. The rule writes nothing, or it writes a slot.
 - Pairs beside a fallback, or beside another pair: as pairs, but another rule writes the same slot.
 - Shared half: n spikes of each of two signals for a rule `a & b`. A second rule `a & c` also takes the spikes of `a`.
 - Recovering and guarded fallbacks: an input among n fallbacks with a cooldown, or with a predicate on a slot.

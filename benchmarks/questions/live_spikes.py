@@ -3,7 +3,7 @@
 A spike is live until the engine removes it. Each of three shapes runs with 10,000 and with 100 live spikes:
 
 - Burst: all spikes are raised at once, and one rule handles each.
-- One more: the rule of the spikes waits for a second signal that never comes; one more spike arrives.
+- One more: the rule of the spikes waits for a second signal that never comes; further spikes arrive one by one.
 - Beside: an input gets its answer while the spikes wait for the second signal.
 """
 

@@ -76,7 +76,7 @@ def made(contexts: int) -> float:
 
 
 def collected(contexts: int) -> float:
-    """Return the seconds of processor time of a full collection."""
+    """Return the seconds of processor time of a full collection: the least of three."""
     policy = rs.compile(Agent(1).module)
     kept = asyncio.new_event_loop().run_until_complete(_start(policy, contexts))
     gc.collect()
@@ -90,7 +90,7 @@ def collected(contexts: int) -> float:
 
 
 def ask(bench: Bench) -> Iterable[Figure]:
-    """Measure a small agent, and an agent with a thousand rules."""
+    """Measure contexts of a small agent and of an agent with a thousand rules, and the two processor times."""
     contexts = bench.several(100, 30)
     for k, unrelated in ((1, 0), (8, 1000)):
         values = [

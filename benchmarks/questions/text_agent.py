@@ -1,7 +1,7 @@
 """How fast is the complete text agent, and how much memory does it hold?
 
-- Decided: the time from the input until a rule writes an answer or calls the language model. The figure does not
-  include the model's time. All modules of ``ravestate chat`` are loaded, with everything that they load on first use.
+- Decided: the time from the input until a rule writes an answer, or the rule of small talk begins. The figure does not
+  include the time of small talk. All modules of ``ravestate chat`` are loaded, with everything that they load on first use.
 - Prompt: the time from the start of the process to the console's prompt on a terminal.
 - Held: the resident memory of the agent, without the language model, which runs in a process of its own.
 """
