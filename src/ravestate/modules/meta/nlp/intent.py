@@ -42,8 +42,8 @@ def intent(module: rs.Module, name: str, *, examples: Sequence[str] | str | Path
             sentences, or a mapping from names of intents to such lists.
 
     Raises:
-        DeclarationError: There are no examples, the file is missing, the name is taken or ``none``, or `module` lacks
-            ``nlp``.
+        DeclarationError: There are no examples, the file is missing or has another form, the name is taken or ``none``, or
+            `module` lacks ``nlp``.
 
     Example:
         ::

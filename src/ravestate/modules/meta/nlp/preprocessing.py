@@ -35,7 +35,7 @@ _NO_WAIT = re.compile(r"(?:^|(?<=[.!?,;] ))no(?= wait,)", re.IGNORECASE)
 
 
 def preprocess(text: str) -> str:
-    """Return `text` with some words replaced by words of the same length.
+    """Return `text` with some words replaced by words of the same length, and control characters by spaces.
 
     Example:
         >>> preprocess("do you like\\x00it?")

@@ -1,4 +1,5 @@
-"""Goals of the agent. The agent pursues a goal while the user is silent, until the goal is reached or refused."""
+"""Goals of the agent. The agent pursues a goal while the user is silent, until the goal is
+reached or refused, or has no tries left."""
 
 from __future__ import annotations
 

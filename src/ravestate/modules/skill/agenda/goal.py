@@ -1,4 +1,4 @@
-"""Declare goals. One rule of the designer's module pursues the goal; other rules of the module end the goal."""
+"""Declare goals. One rule of the designer's module pursues the goal; other rules of the module may end the goal."""
 
 from __future__ import annotations
 
@@ -61,31 +61,33 @@ def goal(
 ) -> Goal:
     """Declare a goal of the agent.
 
-    The agent *pursues* the goal: it says the goal's words when it is bored, unless it has just pursued another goal. The
-    goal is over when `done` or `refused` happens, or after the last try. The user's words interrupt the pursuit.
+    The agent *pursues* the goal: it says the goal's words when it is bored. It does not if it has just pursued a goal, or
+    if the conversation has a topic. The goal is over when `done` or `refused` happens, or `cooldown` seconds after the
+    last try. The user's words interrupt the pursuit.
 
     The goal is a rule, ``module:name``. So ``sim.explain("module:name")`` says why the goal was pursued or not.
 
     Args:
         module: The goal's module; it must require `agenda`.
         name: The goal's name within the module.
-        say: The agent's words: a text; several texts, one for each try in turn; or a function of the rule context that
-            returns a text. The function may be async, and slow.
-        intent: The name of an intent of `verbaliser`, instead of `say`.
+        say: The agent's words: a text; several texts, one for each try in turn (the last is repeated); or a function of the
+            rule context that returns a text. The function may be async, and slow.
+        intent: An intent of `verbaliser`, or its name, instead of `say`.
         reads: The slots that the function `say` reads.
         when: A further condition for a pursuit, e.g. ``interloc.users.holds(bool)``.
         unless: A condition that prevents a pursuit. It may contain only ``slot.holds(...)``.
         priority: The weight of the goal's rule, which multiplies its utility. The goal with the greatest utility goes
             first.
         cooldown: Seconds from one try to the next; also the seconds that the user has for an answer.
-        done: The event that makes the goal a success, at any time: a signal, a condition, or a regular expression of
+        done: The event that makes the goal a success: a signal or a condition, at any time; or a regular expression of
             whole words for the user's answer. If it is None, the first try makes the goal a success.
         refused: The event that makes the agent drop the goal, such as the user's "no". It has the same forms as `done`.
-        tries: The maximum number of tries; the goal is dropped after the last one.
+            If an answer fits both expressions, the goal is dropped.
+        tries: The maximum number of tries; the goal is dropped `cooldown` seconds after the last one.
 
     Raises:
-        rs.DeclarationError: `say` and `intent` are both given or both missing, a number is impossible, an expression is
-            invalid, or `unless` contains a signal.
+        rs.DeclarationError: `say` and `intent` are both given or both missing, `say` has no text, or a number is
+            impossible. The error also means that an expression is invalid, or that `unless` contains a signal.
 
     Example:
         >>> import ravestate as rs

@@ -51,8 +51,8 @@ class Settings(rs.Settings):
 module = rs.Module("agenda", requires=[rawio, idle, verbaliser], settings=Settings)
 
 opportunity = module.signal("opportunity", payload=float)
-"""The agent may pursue one goal: neither the agent nor the user is talking, and the last pursuit is long enough ago. The
-payload is the time on the context's clock (seconds)."""
+"""The agent may pursue one goal: neither the agent nor the user is talking, the last pursuit is long enough ago, and the
+conversation has no topic. The payload is the time on the context's clock (seconds)."""
 
 goals: rs.Collection[GoalState] = module.collection("goals")
 """Name of a goal's rule → the goal's state, for each goal that was pursued, reached or dropped."""

@@ -1,4 +1,4 @@
-"""The rules of agenda. They decide when the agent may pursue a goal, which means to say the goal's words."""
+"""The rules of agenda: when the agent may pursue a goal (say the goal's words), and the goals in the settings."""
 
 from __future__ import annotations
 
@@ -11,7 +11,7 @@ from .names import Settings, goals, module, opportunity, topics
 
 @module.rule(when=idle.bored, reads=(goals, topics), emits=opportunity)
 async def take_initiative(ctx: rs.RuleContext) -> rs.Resign | None:
-    """Allow the pursuit of one goal, unless another goal has just had its turn, or the conversation has a topic."""
+    """Allow the pursuit of one goal, unless a goal was pursued in the last `gap` seconds, or there is a topic."""
     if ctx[topics]:
         return rs.Resign(f"the conversation is about {', '.join(ctx[topics])}")
     for name, state in ctx[goals].items():

@@ -50,7 +50,7 @@ class Wish(BaseModel):
     name: Annotated[str, Field(pattern=r"^[A-Za-z_][A-Za-z0-9_-]*$")]
     """The goal's name; its rule is ``agenda:<name>``."""
     say: Text | Annotated[tuple[Text, ...], Field(min_length=1)]
-    """The agent's words: a text, or several texts, one for each try in turn."""
+    """The agent's words: a text, or several texts, one for each try in turn. The last text is repeated."""
     priority: Annotated[float, Field(gt=0, allow_inf_nan=False)] = 1.0
     """Goals of higher priority come first."""
     cooldown: Annotated[float, Field(gt=0, allow_inf_nan=False)] = 60.0

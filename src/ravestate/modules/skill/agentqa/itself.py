@@ -67,6 +67,8 @@ def _settle(life: Life, graph: Graph) -> tuple[Node, bool]:
 async def recall(life: Life, memory: Memory) -> Mapping[str, Fact]:
     """Return the agent's facts. The birthday and the facts in `RELATIONS` come from memory, all others from the file.
 
+    If memory has no node for the agent, all facts come from the file.
+
     Raises:
         PlatformError: Memory failed.
     """

@@ -25,7 +25,7 @@ if TYPE_CHECKING:
 COUNTED = ("age", "mood", "time", "date", "memory")
 """Parameters of phrases whose values come from the clock or from slots, not from the file."""
 KNOWN = ("name", "born", *COUNTED)
-"""Parameters that any phrase may have."""
+"""Parameters that any phrase may have, besides the facts of the file."""
 NAMED = ("it", "that")
 """Parameters of the phrases under ``named``: answers to a question that names a value of a fact."""
 
@@ -40,8 +40,8 @@ def read_life(own: Path | None = None) -> Life:
     """Read the agent's life from the module's file, with the changes in the designer's file `own`.
 
     A fact in the designer's file replaces the module's fact; the value ``~`` removes the fact. A topic of the same name
-    adds questions, remarks and acts to the module's topic, and replaces the phrases; the value ``~`` removes the topic.
-    Topics with other names are new.
+    adds questions, remarks and acts to the module's topic; the value ``~`` removes the topic. Its ``phrases`` replace all
+    answers of the module's topic. Topics with other names are new, and questions in ``others`` are added.
 
     Raises:
         DeclarationError: The designer's file has a mistake; the message names the line.

@@ -26,8 +26,8 @@ class Settings(rs.Settings):
     life: Path | None = None
     """The designer's life file. Its facts and topics change those of the same name in the built-in file."""
     prompt_after: Annotated[float, Field(gt=0)] = 60.0
-    """Seconds of silence after which the agent invites the user to ask about the agent. This happens only once, and only
-    after six utterances of the user."""
+    """Seconds from `idle.bored` to the agent's invitation to ask about the agent. This happens only once, and only after
+    six utterances of the user."""
 
     @field_validator("life")
     @classmethod

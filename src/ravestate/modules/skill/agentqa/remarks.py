@@ -1,6 +1,7 @@
-"""Remarks that the agent must answer. Fixed expressions show distress.
+"""Remarks that the agent must answer, such as signs of distress.
 
-Acts (the kinds of an utterance, such as an insult) and feelings show other remarks.
+A remark fits an expression of a topic, or shows a topic's act or feeling. An act is a kind of utterance, such as an
+insult.
 """
 
 from __future__ import annotations
@@ -33,11 +34,13 @@ class Remark:
 
 
 def remark_in(utterance: str, life: Life, names: Collection[str] = ()) -> Remark | None:
-    """Return the remark that matches an expression of a topic. If several topics match, take the first in `life`.
+    """Return the remark that matches an expression of a topic; None if there is none.
+
+    If several topics match, take the first in `life`.
 
     Args:
         utterance: The user's words.
-        life: The life, with the topics and their remarks.
+        life: The agent's life story, with the topics and their remarks.
         names: Further names of the agent.
 
     Example:
@@ -55,10 +58,11 @@ def remark_in(utterance: str, life: Life, names: Collection[str] = ()) -> Remark
 
 
 def act_in(analysis: Analysis, life: Life) -> Remark | None:
-    """Return the remark that shows an act or a feeling of a topic. If several topics match, take the first in `life`.
+    """Return the remark that shows an act or a feeling of a topic; None if there is none.
 
-    A feeling counts only if the user says *you*, or says nothing else. So *useless* does not count in *useless. how
-    long do eggs boil*.
+    If several topics match, take the first in `life`. A feeling counts only if its sentence says *you*, or is the only
+    sentence. So *useless* does not count in *useless. how long do eggs boil*. An insult does not count if it is playful,
+    or if users mean themselves.
     """
     for name, topic in life.topics.items():
         for known in topic.acts:

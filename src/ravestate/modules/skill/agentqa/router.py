@@ -22,9 +22,10 @@ LEAST = 0.5
 WORDS = 20
 """The maximum number of words in a question about the agent."""
 BRIEF = 5
-"""The maximum number of words of an indirect question that does not mention the agent: *do you know what time it is*."""
+"""The maximum number of words of an indirect question after *you*, if it does not mention the agent: *what time it is* in
+*do you know what time it is*."""
 SENTENCES = 4
-"""The maximum number of sentences that are considered."""
+"""The maximum number of sentences that are considered; longer sentences than `WORDS` do not count."""
 _QUESTION_WORD = re.compile(r"(?<=\s)(?:who|whom|whose|what|which|where|when|why|how|if|whether)\b", re.IGNORECASE)
 
 _POLITE = re.compile(
@@ -70,7 +71,7 @@ class Miss:
 class Router:
     """A classifier that finds the topic of a question about the agent. Thread-safe.
 
-    It is a `Matcher` over a life's example questions. Before `load`, it recognises only exact examples.
+    It compares a question with the example questions of the agent's life story, by means of a `Matcher`.
     """
 
     def __init__(self, life: Life, encoder: Encoder | None = None) -> None:
@@ -91,7 +92,8 @@ class Router:
         Args:
             utterance: The user's words, as typed or in their normal form.
             names: Further names of the agent.
-            question: Whether the utterance surely asks something, perhaps indirectly: *I wonder who made you*.
+            question: Whether the utterance is known to ask something. If so, indirect questions count as well: *I wonder who
+                made you*.
 
         Raises:
             PlatformError: The sentence model is broken.
@@ -121,9 +123,11 @@ def router_of(life: Life) -> Router:
 
 
 def _readings(sentence: str, *, question: bool) -> Iterator[str]:
-    """Yield a sentence, then the part after its last comma, then the bare question in it.
+    """Yield the forms of a sentence that may be a question: the sentence, and the part after its last comma.
 
-    A question may be indirect, polite, or without its verb: *I wonder how old you are*, *may I ask your name*, *any hobbies*.
+    If `question` is true, yield also the bare question in the sentence. The sentence may be indirect, polite, or without
+    a verb: *I wonder how old you are*, *may I ask your name*, *any hobbies*. For *you like tea*, yield only *do you like
+    tea*.
     """
     whole = _in_full(_POLITE.sub("tell me", _OPENERS.sub("", plain(sentence))))
     turned = question and whole != plain(sentence)

@@ -26,10 +26,10 @@ from .router import Match, Miss, router_of
 from .telling import telling, without_question
 
 CERTAIN = 0.7
-"""The least confidence at which the agent accepts the topic of a question without further evidence."""
+"""The least confidence of the topic of a question, if the utterance also seems to call for another kind of reply."""
 STATED = 0.85
-"""The least confidence at which the agent accepts the topic of a statement. It is higher than `CERTAIN`, because a
-statement may resemble a question: *I don't know what to say*."""
+"""The same as `CERTAIN`, for a statement. It is higher, because a statement may resemble a question: *I don't know what
+to say*."""
 STRAY = 0.9
 """The least confidence at which the agent accepts the topic of a question for advice. This threshold is for questions
 that do not mention the agent: *what if I forget my lines*."""
@@ -117,7 +117,7 @@ async def understand(ctx: rs.RuleContext) -> rs.Resign | None:
 
 @module.rule(when=rawio.input.changed, reads=(life, turns), writes=turns, emits=remarked)
 def heed(ctx: rs.RuleContext) -> None:
-    """Notice a remark by its words alone, so that distress gets an answer even without the sentence models.
+    """Count the utterance. Notice a remark by its words alone: distress gets an answer even without sentence models.
 
     The rule runs in a thread, because it waits for the normal form and the encoder.
     """
@@ -193,7 +193,7 @@ async def answer(ctx: rs.RuleContext) -> rs.Resign | None:
     detached=True,
 )
 async def offer(ctx: rs.RuleContext) -> rs.Resign | None:
-    """After a long silence, invite the user to ask about the agent. Do so only once."""
+    """After a long silence, invite the user to ask about the agent. Do so once, after at least `TURNS` utterances."""
     count, last = ctx[turns]
     if ctx[prompted] is not None or count < TURNS:
         return rs.Resign("the agent has made this offer before, or the conversation has just begun")
@@ -217,7 +217,7 @@ def intent(topic: str, phrases: Sequence[str]) -> Intent:
 
 
 async def known(ctx: rs.RuleContext, told: Life, memory: ontology.Memory | None) -> Mapping[str, Fact]:
-    """Return the agent's facts from memory. If there is no memory, return them from the file."""
+    """Return the agent's facts from memory. If there is no memory, or if it fails, return them from the file."""
     if memory is None:
         return told.facts
     try:

@@ -14,7 +14,7 @@ from .life import Fact, Topic
 def telling(
     topic: Topic, question: str, facts: Mapping[str, Fact], *, mood: str, now: datetime
 ) -> tuple[str, ...] | None:
-    """Return the phrases to choose from; None if every phrase needs an unknown fact.
+    """Return the phrases to choose from; None if no phrase fits the question, or if every phrase needs an unknown fact.
 
     Args:
         topic: The topic.

@@ -1,7 +1,8 @@
 """The state of a game, and its transitions.
 
-`MOVES` lists the moves that the user may make in each step. `play` maps a state and a move to the next state, and to
-the agent's words, feelings and actions. This file knows no rules, slots or clock.
+`MOVES` lists the moves that the user may make in each step, and `ANYWHERE` the moves in every step of a game. `play`
+maps a state and a move to the next state, and to the agent's words, feelings and actions. This file knows no rules,
+slots or clock.
 """
 
 from __future__ import annotations

@@ -308,8 +308,10 @@ def ranked(seen: Iterable[activity.Activity]) -> tuple[str, ...]:
     detached=True,
 )
 async def remind(ctx: rs.RuleContext) -> rs.Resign | None:
-    """After a silence, ask again. After a second silence, end the game. In the step ``choosing``, start the
-    countdown."""
+    """After a silence, ask again. After a second silence, end the game.
+
+    In the step ``choosing``, start the countdown. In the step ``offered``, end the game without a word.
+    """
     if ctx[game].turn != ctx.payload(prompted):
         return rs.Resign("the game has gone on")
     carry_out(ctx, play(ctx[game], Move("silence"), world_of(ctx)))
@@ -342,7 +344,10 @@ async def be_patient(ctx: rs.RuleContext) -> rs.Resign | None:
     background=True,
 )
 async def resume(ctx: rs.RuleContext) -> rs.Resign | None:
-    """Return to the game after the user's words on something else, as soon as no foreground rule runs or waits."""
+    """Return to the game `aside` seconds after the user's words on something else.
+
+    Wait until no foreground rule runs or waits.
+    """
     turn = ctx[game].turn
     await ctx.quiet()
     now = ctx[game]

@@ -34,7 +34,8 @@ GOOD, VERY_GOOD, HOPELESS = 7.5, 9.0, -4.0
 """The reading ends when the best score so far is at least `VERY_GOOD` after the first passage, or at least `GOOD` later.
 If the best of four scores is `HOPELESS` or less, the reading also ends, except for a follow-up."""
 ENOUGH = 0.4
-"""The minimum share (0 to 1) of the question's words in a passage. Passages with a smaller share are not read."""
+"""The minimum share (0 to 1) of the question's words in a passage. Passages with a smaller share are not read,
+except passages of documents that the thread is about (see `SHORT`)."""
 SHORT = 24
 """The search adds at most this many passages of each document that the thread (the latest questions) is about. These
 passages need not have words of the question."""
@@ -48,7 +49,8 @@ word of `Question.kinds`, `NAMES` if not."""
 WORDS = 24
 """The maximum number of words to search for."""
 NOT_STATED = "no document states all of it"
-"""The reason why there is no answer, if no passage meets the question's qualifiers, such as names, years and ranks."""
+"""The reason why there is no answer, if no passage has enough of the question's words and meets its qualifiers (names,
+years, ranks...)."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -60,18 +62,18 @@ class Candidate:
     row: int
     """The passage's row in the index."""
     score: float
-    """The reader's score, up to 11; most passages above 0 are good answers."""
+    """The reader's score, up to 11; a higher score means a better answer."""
     covered: float
     """The share of the question's words in the passage, 0 to 1; rare words weigh more. In a follow-up, names do not count."""
 
 
 @dataclass(frozen=True, slots=True)
 class Answer:
-    """The documents' answer. If the text is empty, there is no answer."""
+    """An answer from the documents, or a computed result. If the text is empty, there is no answer."""
 
     question: str
     text: str = ""
-    """A passage, word for word."""
+    """A passage, word for word, or a computed result. A comparison has its result, and then both passages."""
     source: str = ""
     title: str = ""
     confidence: float = 0.0
@@ -134,6 +136,8 @@ class Answerer:
 
     def load(self) -> None:
         """Open the index, add the collection, and load the reader, unless this is done already. `answer` does the same.
+
+        Without documents, the reader is not loaded.
 
         Raises:
             PlatformError: The index cannot be opened, or the reader is not installed.

@@ -1,4 +1,4 @@
-"""Bring an index up to date with files and folders: read new and changed files, and remove deleted files."""
+"""Bring an index up to date with files and folders: read new and changed files, and forget deleted files."""
 
 from __future__ import annotations
 
@@ -42,9 +42,9 @@ class Found:
 
 
 def find(paths: Iterable[Path], index: Index) -> Found:
-    """Return the files under `paths`: single files, and all readable files of folders.
+    """Return the files under `paths`: single files, and the files of known kinds in folders.
 
-    Hidden files, and links to folders, are skipped.
+    Inside a folder, hidden files, hidden folders and links to folders are skipped.
     """
     found = Found()
     for path in paths:

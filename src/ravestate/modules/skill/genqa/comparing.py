@@ -21,7 +21,7 @@ _TIMED = ("old", "early", "late")
 
 
 def compared(heard: Parse, thread: Sequence[Turn], ask: Callable[[str], Answer]) -> Answer | None:
-    """Return the result of a comparison; None if the utterance compares nothing, or if the documents lack a number.
+    """Return the result of a comparison; None if the utterance compares nothing, or if the documents lack comparable values.
 
     Args:
         heard: The utterance.
@@ -127,7 +127,7 @@ def _name(heard: Parse, word: Word, thread: Sequence[Turn]) -> str:
 
 
 def _told(turn: Turn, base: str) -> Answer | None:
-    """Return a turn's answer if this answer has the measure that the comparison needs."""
+    """Return a turn's answer if its question may ask for the measure of the comparison; None if not."""
     words = set(turn.question.lower().split())
     fits = base in ("big", "large", "many", "much") or (base == "old" and "when" in words)
     if not fits and words.isdisjoint(variants_of(base)):
@@ -136,7 +136,7 @@ def _told(turn: Turn, base: str) -> Answer | None:
 
 
 def _asked(name: str, base: str, noun: str, ask: Callable[[str], Answer]) -> Answer | None:
-    """Ask the documents, and return the best answer with a measure of `name`."""
+    """Ask the documents, and return the best answer with a measure of `name`; None if there is none."""
     counts = base == "many" or noun
     if base in _TIMED and not counts and (found := begun(name, ask)) is not None:
         return found

@@ -103,7 +103,10 @@ def _about(answerer: Answerer, question: Question, reading: Reading, latest: str
 
 
 def _reckoned(heard: Parse, thread: Sequence[Turn], settings: Settings) -> Answer | None:
-    """Return the result of a sum; None if the utterance is not a sum."""
+    """Return the result of a calculation, or the reason why it is impossible.
+
+    Return None if the utterance asks for no calculation, or if a library is missing.
+    """
     told, now = [focused(turn.question, turn.answer) for turn in thread], datetime.now().astimezone()
     text = heard.text
     try:
@@ -137,7 +140,8 @@ def _again(text: str, before: str) -> str:
 def _decided(answerer: Answerer, question: Question, settings: Settings, titles: Sequence[str]) -> Answer:
     """Return the documents' answer to `other_wording` of the question, if that answer is sure.
 
-    Otherwise, return the answer to the question itself. A vague question gets no sure answer.
+    Otherwise, return the answer to the question itself. Its confidence is 0 if the question is doubtful and the answer is
+    not sure. A vague question gets no sure answer.
     """
     if not question.declined and (other := other_wording(question.text)):
         decided = answerer.answer(other, titles)

@@ -56,7 +56,7 @@ class IndexedFile:
 
 @dataclass(frozen=True, slots=True)
 class Found:
-    """A passage that shares words with a question."""
+    """A passage in the index."""
 
     row: int
     title: str
@@ -65,7 +65,7 @@ class Found:
 
 
 class Index:
-    """Passages on disk. Any number of threads and processes may read while one thread of one process writes.
+    """Passages on disk. Any number of processes may read while one process writes; threads of one `Index` take turns.
 
     Each file is added, replaced or removed as a whole, in one transaction. If Ctrl-C, ``kill -9`` or a full disk
     interrupts the transaction, the index stays as it was before.

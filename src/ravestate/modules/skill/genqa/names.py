@@ -31,7 +31,7 @@ class Settings(rs.Settings):
     silent."""
     wording: Literal["sentence", "model"] = "sentence"
     """``sentence``: the document's own words; ``model``: the words of wildtalk's language model. The prompt has only the
-    question and the passages that were found. A result with any other name or number is not used."""
+    question and the passages that were found. A result with a name or number from elsewhere is not used."""
     reader: Path | None = None
     """The folder of another cross-encoder (``model.onnx``, ``tokenizer.json``), the model that judges passages. The
     confidence is calibrated for the bundled cross-encoder."""
@@ -50,7 +50,7 @@ class Settings(rs.Settings):
 module = rs.Module("genqa", requires=[rawio, nlp, verbaliser], settings=Settings)
 
 found = module.signal("found", payload=Answer)
-"""The documents have an answer that is probable enough to say."""
+"""The documents have an answer that is probable enough to say, or a result was computed."""
 
 thread: rs.Slot[tuple[Turn, ...]] = module.slot("thread", ())
 """The latest questions with their answers, oldest first. A follow-up such as *and its capital?* refers to them."""

@@ -10,7 +10,7 @@ from ravestate.modules._text import printable
 from .document import Passage
 
 LONGEST = 280
-"""The maximum number of characters in a passage; a longer sentence is cut."""
+"""The usual maximum number of characters in a passage. If a sentence is more than `SHORTEST` longer, it is cut."""
 SHORTEST = 12
 """The minimum number of characters in a passage; page numbers and captions are shorter."""
 
@@ -29,7 +29,7 @@ def passages_of(text: str) -> Iterator[Passage]:
     """Yield the passages of `text`, in order.
 
     An empty line ends a paragraph; a single line break is a space. A sentence that begins with a word such as *it* or
-    *this* refers to the latest sentence that does not begin with such a word. If both together are short enough, they
+    *this* refers to the latest sentence of its paragraph without such a beginning. If both together are short enough, they
     are one passage.
 
     Example:

@@ -1,4 +1,4 @@
-"""Readers for all kinds of files: text, Markdown, HTML, PDF, JSON lines, ZIM."""
+"""Readers for several kinds of files: text, Markdown, HTML, PDF, JSON lines, ZIM."""
 
 from __future__ import annotations
 
@@ -16,7 +16,7 @@ from .document import Document
 from .passages import passages_of
 
 LARGEST = 64 << 20
-"""The maximum size of a text file or an HTML page, in bytes. The whole file is held in memory."""
+"""The maximum size of a text, Markdown or HTML file, in bytes. The whole file is held in memory."""
 _MARKS = {
     codecs.BOM_UTF8: "utf-8", codecs.BOM_UTF32_LE: "utf-32-le", codecs.BOM_UTF32_BE: "utf-32-be", codecs.BOM_UTF16_LE: "utf-16-le",
     codecs.BOM_UTF16_BE: "utf-16-be",
@@ -37,7 +37,7 @@ class Unreadable(Exception):
 
 
 def kind_of(path: Path) -> str | None:
-    """Return the ending of a file's name if files of this kind can be read; None if they cannot."""
+    """Return the ending of a file's name, in lower case, if files of this kind can be read; None if they cannot."""
     ending = path.suffix.lower()
     return ending if ending in KINDS else None
 
@@ -115,13 +115,14 @@ def _html(path: Path, source: str) -> Iterator[Document]:
 
 
 def documents_in(content: bytes | str, title: str, source: str, top: str | None = None) -> Iterator[Document]:
-    """Yield the documents of a page, one for each heading.
+    """Yield the documents of a page: the text before the first heading, and the text after each heading.
 
     Args:
         content: The page; bytes may be in any encoding that the page declares.
         title: The title, if the page has none of its own.
         source: The source that an answer names.
-        top: The first part of each document's title; by default the page's title.
+        top: The first part of each document's title; by default the page's title. If it is empty, titles begin with a
+            heading.
 
     Raises:
         Unreadable: beautifulsoup4 is not installed.
@@ -187,7 +188,10 @@ def _pdf(path: Path, source: str) -> Iterator[Document]:
 
 
 def _jsonl(path: Path, source: str) -> Iterator[Document]:
-    """Yield a document for each line, ``{"title": "...", "text": "...", "source": "..."}``; only the text is required."""
+    """Yield a document for each line, ``{"title": "...", "text": "...", "source": "..."}``.
+
+    Only the text is required; its key may also be ``contents``. Empty lines are skipped.
+    """
     with path.open("rb") as lines:
         for number, line in enumerate(lines, start=1):
             if not line.strip():
@@ -205,7 +209,7 @@ def _jsonl(path: Path, source: str) -> Iterator[Document]:
 
 
 def _zim(path: Path, source: str) -> Iterator[Document]:
-    """Yield the documents of each article in a ZIM file, the format of Kiwix; skip redirects and pictures."""
+    """Yield the documents of each article in a ZIM file, the format of Kiwix; skip redirects, pictures and other files."""
     why = "pip install libzim (it is under the GPL, so you install it yourself)"
     reader = _library("libzim.reader", "libzim", "ZIM", why)
     try:

@@ -92,14 +92,14 @@ def words_for(name: str) -> frozenset[str]:
 def reckon(
     text: str, told: Sequence[str], today: date, rates: Mapping[str, float] | None = None, now: time | None = None
 ) -> str:
-    """Return a sentence with the result of a sum; empty if the text is not a sum.
+    """Return a sentence with the result of a sum, or of a question about units, dates or prices; otherwise empty.
 
     Args:
         text: The utterance.
         told: The latest answers, oldest first; *that* refers to them.
         today: The date; *how long ago* counts from it.
         rates: Currency → its value. All values are in the same currency.
-        now: The time of day; *how long till noon* counts from it.
+        now: The time of day; *how long till noon* counts from it, and has no result without it.
 
     Raises:
         Unanswerable: The sum has no result.
@@ -432,7 +432,16 @@ def _dates(spoken: str, told: Sequence[str], today: date) -> str:
 
 
 def apart(one: Dated, other: Dated, unit: str = "year") -> str:
-    """Return the time between two dates in words; `unit`: day, week, month or year."""
+    """Return the time between two dates in words.
+
+    Args:
+        one: A date.
+        other: The other date, earlier or later.
+        unit: day, week, month or year; if it is empty, day for less than 100 days, and year for more.
+
+    Raises:
+        Unanswerable: The unit is smaller than a year, and only the year of a date is known.
+    """
     from dateutil.relativedelta import relativedelta
 
     first, last = sorted((one, other), key=lambda each: each.day)

@@ -89,6 +89,6 @@ def find(ctx: rs.RuleContext) -> rs.Resign | None:
 
 @module.rule(when=found, writes=verbaliser.intent)
 async def say(ctx: rs.RuleContext) -> None:
-    """Say the answer and its source."""
+    """Say the answer; name its source if it comes from a document that was not written for Ravestate."""
     answer = ctx.payload(found)
     ctx[verbaliser.intent] = intent_of(answer, answer.text, ctx.settings)

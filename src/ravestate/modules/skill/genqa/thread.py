@@ -1,7 +1,7 @@
-"""The thread of a conversation: the latest questions with their answers, and follow-ups completed from them.
+"""The thread of a conversation: the latest questions with their answers. A follow-up is a question that refers to it.
 
-A follow-up has several readings: in *when was he born?*, *he* may be any man in the thread. `readings` returns them in
-order of likelihood, and the documents decide between them.
+A follow-up has several readings: in *when was he born?*, *he* may be any man in the last two turns. `readings` returns
+them roughly in order of likelihood, and the documents decide between them.
 """
 
 from __future__ import annotations
@@ -26,7 +26,7 @@ KEPT = 6
 REMEMBERED = 120.0
 """Seconds for which later questions may refer to a question."""
 LESS = -0.15
-"""The log odds of a reading, relative to those of the reading before it."""
+"""The usual change of the log odds from one reading to the next."""
 _ONES = ("one", "ones", "former", "latter")
 _RANKS = {name: place for place, name in enumerate(["first", "second", "third", "fourth", "fifth", "sixth"])} | {
     "last": -1, "latter": -1, "former": -2,
@@ -40,7 +40,7 @@ class Thing:
 
     text: str
     label: str
-    """The label of the entity; ``NAME`` or ``TITLE`` for other names, empty for common nouns."""
+    """The label of the entity; ``NAME`` for other names, ``TITLE`` for a document's title; otherwise empty."""
 
     @property
     def is_person(self) -> bool:
@@ -55,12 +55,15 @@ class Thing:
 
 @dataclass(frozen=True, slots=True)
 class Turn:
-    """A question with its answer. The question can be understood alone."""
+    """A question with its answer, or other words of the agent.
+
+    The question can be understood alone. It is empty if the words of the agent are no answer.
+    """
 
     question: str
     answer: str
     title: str
-    """The title of the document with the answer; empty for a sum."""
+    """The title of the document with the answer; empty if the answer was computed, or is from no document."""
     at: float
     """The time of the question, in seconds since the context began."""
     asked: tuple[Thing, ...] = ()
@@ -68,7 +71,7 @@ class Turn:
     told: tuple[Thing, ...] = ()
     """The things that only the answer names, not the question. The thing that a pronoun most likely means comes first."""
     items: tuple[str, ...] = ()
-    """The members of a list in the answer."""
+    """The members of the longest list in the answer."""
     sexes: tuple[tuple[str, str], ...] = ()
     """Names, each with its pronoun: ``he`` or ``she``."""
     source: str = ""
@@ -95,7 +98,8 @@ class Reading:
     about: str = ""
     """The subject, if it comes from the thread; `text` may name it, too."""
     new: str = ""
-    """The words of the utterance that replace words of an earlier question; a passage must have them."""
+    """The words of the utterance that the reading adds to an earlier question or a name. A passage of a document counts
+    only if it has these words or their variants."""
 
 
 def turn_of(asked: Parse, found: Answer, at: float) -> Turn:
@@ -122,7 +126,7 @@ def turn_of(asked: Parse, found: Answer, at: float) -> Turn:
 
 
 def overheard(said: str, at: float) -> Turn:
-    """Return a turn for words of the agent that are no answer, so that later questions may refer to their names."""
+    """Return a turn for words of the agent that are no answer. Later questions may refer to the names in them."""
     return Turn("", said, "", at, told=tuple(thing for thing in things_of(parse(said)) if thing.is_name))
 
 
@@ -177,7 +181,9 @@ def _lists(tree: Tree) -> Iterator[tuple[str, ...]]:
 
 
 def readings(seen: Parse, thread: Sequence[Turn], titled: Callable[[str], str] = lambda _: "") -> list[Reading]:
-    """Return the questions that an utterance may stand for; an empty list if it refers to something outside the thread.
+    """Return the questions that an utterance may stand for, roughly in order of likelihood.
+
+    The list is empty if the utterance refers to something outside the thread, or asks nothing, as *really?* does.
 
     Args:
         seen: The utterance.
@@ -222,7 +228,7 @@ def refers(word: Word, words: Sequence[Word]) -> bool:
 
 
 def referents(pronoun: Word, thread: Sequence[Turn]) -> list[Thing]:
-    """Return the things that a pronoun may stand for, most likely first."""
+    """Return up to six things in the last two turns that a pronoun may stand for, most likely first."""
     sex, there = SEXES.get(pronoun.low), pronoun.low == "there"
     known = {name: said for turn in thread for name, said in turn.sexes}
     found: dict[str, Thing] = {}
@@ -244,7 +250,7 @@ def referents(pronoun: Word, thread: Sequence[Turn]) -> list[Thing]:
 
 
 def correction(seen: Parse) -> list[Word]:
-    """Return the words for the thing that the user meant: *Mount Olin* in *I meant Mount Olin*."""
+    """Return the words for the thing that the user meant: *Mount Olin* in *I meant Mount Olin*. Otherwise, return []."""
     root = next((word for word in seen.asked if word.lemma == "mean" and word.head == word.index), None)
     if root is None or not any(word.low == "i" for word in seen.tree.children(root, "nsubj")):
         return []
@@ -272,7 +278,7 @@ class _Follow:
         self.names = [thing for thing in (*self.last.asked, *self.last.told) if thing.is_name]
 
     def readings(self) -> Iterator[Reading]:
-        """Yield the readings, most likely first."""
+        """Yield the readings, roughly in order of likelihood."""
         words = self.words
         one = next((w for w in words if w.low in _ONES and w.pos in ("NUM", "NOUN", "PRON", "ADJ")), None)
         rest = [word for word in words if word not in self.pronouns]
@@ -331,7 +337,10 @@ class _Follow:
         return _question(parts)
 
     def _chosen(self, one: Word) -> Iterator[Reading]:
-        """Yield the readings of *the first one* and *the other one*: members of a list, earlier subjects, or a rank."""
+        """Yield the questions that *the first one* or *the other one* may stand for.
+
+        It may mean a member of a list, the subject of an earlier question, or a rank.
+        """
         own = [word for word in phrase_of(self.tree, one) if word in self.words]
         before = self.tree.before(own[0])
         own = [before, *own] if before is not None and before.low == "the" else own
@@ -356,8 +365,9 @@ class _Follow:
     def _instead(self, new: Sequence[Word], text: str = "") -> Iterator[Reading]:
         """Yield earlier questions, latest first, with new words in place of a part of the same kind.
 
-        A part is the question word (*and when?*), the rank (*and the second highest?*), a name or a noun. A noun after
-        the same preposition comes first (*and of Spain?*).
+        A part is the question word (*and when?*), the rank (*and the second highest?*), a name or a noun. A new question
+        word gives one question at most. If a noun follows the same preposition (*and of Spain?*), only such nouns are
+        replaced.
         """
         if not new:
             return

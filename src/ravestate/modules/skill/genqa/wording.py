@@ -19,7 +19,8 @@ from .shipped import OWN
 TOLD = 3
 """The maximum number of passages in the prompt."""
 WORTH_TELLING = 3.0
-"""A further passage is in the prompt only if its score is at most this far below the answer's score."""
+"""A further passage is in the prompt only if its score is not negative, and at most this far below the answer's
+score."""
 FAMILIAR = 0.6
 """The minimum share of the model's words that must also be in the passages or in the question."""
 
@@ -32,7 +33,7 @@ _DENIAL = re.compile(r"\b(?:not|no|never|none|nobody|nothing|neither|nor|without
 
 
 def intent_of(answer: Answer, text: str, settings: Settings) -> verbaliser.Intent:
-    """Return the intent that says `text`, either as certain or as uncertain."""
+    """Return the intent that says `text`: as certain, as uncertain, or as a computed result."""
     if not answer.source:
         return verbaliser.Intent("reckoned", {"answer": text}, package=__package__)
     name = "sure" if answer.confidence >= settings.sure else "unsure"
@@ -42,7 +43,9 @@ def intent_of(answer: Answer, text: str, settings: Settings) -> verbaliser.Inten
 
 
 def wording_rule(settings: Settings) -> rs.Rule[Any, Any]:
-    """Return a rule that lets the language model word the answer. The rule resigns if `is_supported` is false.
+    """Return a rule that lets the language model word the answer.
+
+    The rule resigns if there is no model, or if `is_supported` is false.
 
     The rule is for a context with wildtalk. It outranks `say`, the rule that answers with the document's own sentence.
     If the rule resigns or fails, `say` answers.
@@ -76,7 +79,7 @@ def wording_rule(settings: Settings) -> rs.Rule[Any, Any]:
 
 
 def passages_for(answer: Answer) -> list[str]:
-    """Return the passages for the prompt: the answer, and other passages with about the same score."""
+    """Return the passages for the prompt: the answer, and the best other passages with about the same score."""
     best = next((c for c in answer.candidates if c.text == answer.text), None)
     least = best.score - WORTH_TELLING if best is not None else 0.0
     texts = [answer.text, *(c.text for c in answer.candidates if c.score >= max(least, 0.0))]

@@ -14,7 +14,7 @@ goodbye = module.signal("goodbye")
 """The user says goodbye, and little else."""
 
 parted: rs.Slot[float | None] = module.slot("parted", None)
-"""The time of the agent's last goodbye, in seconds since the context began."""
+"""The time when the agent last answered a goodbye, in seconds since the context began; None if it has not."""
 
 greeted: rs.Slot[float | None] = module.slot("greeted", None)
-"""The time of the agent's last greeting, in seconds since the context began."""
+"""The time of the agent's last greeting, in seconds since the context began; None if there was none."""

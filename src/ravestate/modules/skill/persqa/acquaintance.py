@@ -81,7 +81,7 @@ class Acquaintance:
         return replace(self, talk=replace(self.talk, doubt="", met=True, newcomer=True))
 
     def noted(self, graph: ontology.Graph) -> Acquaintance:
-        """Save what the user has told in this conversation. If their name is not known, save nothing."""
+        """Save what the user has told in this conversation. If their name is not known or in doubt, save nothing."""
         now = self.recall(graph)
         if now.who is None or now.talk.doubt:
             return now

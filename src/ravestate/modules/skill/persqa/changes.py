@@ -64,7 +64,10 @@ def may_correct(seen: nlp.Analysis, topic: str) -> bool:
 
 
 def misheard(text: str, topic: str, latest: Collection[str], seen: nlp.Analysis) -> list[Fact]:
-    """Return the value that the user repeats more clearly, just after the agent understood `latest`: *Lora with an L*."""
+    """Return the value that the user repeats more clearly, just after the agent understood `latest`: *Lora with an L*.
+
+    The list is empty if there is no such value.
+    """
     if not _FIXED.search(text.rstrip(".!? ")):
         return []
     objects = [said.object.text for said in seen.statements if said.object.text]

@@ -54,7 +54,7 @@ def likeness(value: str, kind: str) -> float:
 
 
 def load() -> None:
-    """Load the classifiers, unless they are loaded.
+    """Load the classifiers and the tagger, unless they are loaded.
 
     Raises:
         PlatformError: The sentence model is missing.

@@ -60,7 +60,7 @@ reply = module.signal("reply", payload=Intent)
 """The user has told or asked something about themselves; the payload is the reply."""
 
 noted = module.signal("noted", payload=Noted)
-"""Memory has looked up the user, or has saved facts about them."""
+"""Memory has looked up the user or saved facts about them, or has failed to."""
 
 forgotten = interloc.forgotten
 """Persqa has forgotten the user, so other modules delete the user's data as well. This is a signal of `interloc`."""

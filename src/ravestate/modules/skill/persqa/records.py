@@ -23,7 +23,10 @@ MOST = 200
 
 
 def named(graph: ontology.Graph, name: str) -> ontology.Node | None:
-    """Return the person of this name. If there are several, take the one with the most relations, then the oldest."""
+    """Return the person of this name. If there are several, take the one with the most relations, then the oldest.
+
+    Return None if there is none.
+    """
     people = namesakes(graph, name)
     return max(people, key=lambda person: len(graph.relations(person))) if len(people) > 1 else next(iter(people), None)
 

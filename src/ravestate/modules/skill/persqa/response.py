@@ -38,7 +38,7 @@ class Response:
     user: Acquaintance
     errand: Callable[[ontology.Memory | None], Awaitable[Response]] | None = None
     """A task that needs memory and runs before the reply. It takes the memory, or None, and returns the final response.
-    If memory fails, the task raises no error, and sets ``talk.trouble``."""
+    If memory fails, the task raises no error, and usually sets ``talk.trouble``."""
     forgotten: bool = False
 
 
@@ -170,7 +170,7 @@ async def _settled(
 async def _mistaken(user: Acquaintance, memory: ontology.Memory | None, now: float) -> Response:
     """Stop treating the user as the person whom the agent took them for, and ask who they are.
 
-    If this conversation created the person, remove them from memory.
+    If this conversation created the person, remove them from memory. Otherwise, restore their old facts.
     """
     facts = told_apart(user.facts, user.talk.remembered, user.talk.told) if user.talk.met else user.facts
     if user.talk.met:

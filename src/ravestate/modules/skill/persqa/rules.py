@@ -212,7 +212,10 @@ async def notice_unheard_question(ctx: rs.RuleContext) -> rs.Resign | None:
     background=True,
 )
 async def welcome(ctx: rs.RuleContext) -> rs.Resign | None:
-    """Look up an arriving user in memory. `hibye` greets them; later, in a silence, `ask` mentions a known fact."""
+    """Look up a user in memory who arrives, or whom the platform recognises.
+
+    `hibye` greets them; later, in a silence, `ask` mentions a known fact.
+    """
     if len(ctx[interloc.users]) > 1:
         return rs.Resign("another user is already present")
     before = acquaintance_of(ctx)
@@ -246,7 +249,10 @@ async def part(ctx: rs.RuleContext) -> rs.Resign | None:
 
 
 def item_of(user: Acquaintance) -> str | None:
-    """Return the item for a user in `interloc.users`: their name, and also their node if their identity is certain."""
+    """Return the item for a user in `interloc.users`: their name, and also their node if their identity is certain.
+
+    Return None while the name is not known.
+    """
     return user.name if user.who is None or user.talk.doubt else interloc.Recognised(user.who[NAME], user.who)
 
 

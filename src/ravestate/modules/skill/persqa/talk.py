@@ -27,7 +27,7 @@ LONGEST = 100
 """The maximum number of the user's statements, and of the user's sentences, that a conversation remembers."""
 
 CORRECTABLE = 2
-"""The number of utterances for which the user can correct the last fact in a few words: "no, Bremen"."""
+"""The maximum number of utterances between a fact and its correction in a few words: "no, Bremen"."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -146,7 +146,7 @@ class Talk:
         return replace(self, question=None, ignored=self.ignored + 1)
 
     def closing(self, *topics: str) -> Talk:
-        """Close topics for this conversation."""
+        """Close topics for this conversation, and give up the open question."""
         return replace(self, question=None, closed=self.closed | set(topics))
 
     def learning(self, topics: Collection[str], last: str, latest: tuple[str, ...]) -> Talk:

@@ -26,7 +26,7 @@ _SAID_BACK = {
     "we": "you", "our": "your", "us": "you", "ours": "yours",
 }  # fmt: skip
 LEAST = 0.73
-"""The least similarity between a question and the statement that answers it."""
+"""The similarity that a question and the statement that answers it must exceed."""
 _FIT = {
     nlp.QuestionWord.PERSON: re.compile(r"(?<!^)\b[A-Z]\w|\byour \w"),
     nlp.QuestionWord.TIME: re.compile(
@@ -81,7 +81,7 @@ class Told:
 
 
 def told_in(reader: Reader, before: Sequence[Told] = ()) -> tuple[list[Told], list[Told]]:
-    """Return the free statements of an utterance, and all its statements.
+    """Return the free statements of an utterance, and all statements that the user makes about themselves or others.
 
     In both lists, a name replaces the subject where possible. *He* becomes the name of the person named last, and *my
     sister* becomes the name of the known sister.

@@ -72,7 +72,7 @@ _TABLE: dict[str, Any] = load_yaml(_FILE.read_text(encoding="utf-8"), str(_FILE)
 _ROWS = TypeAdapter(list[Topic]).validate_python([{"name": name, **row} for name, row in _TABLE.pop("topics").items()])
 
 TOPICS: Mapping[str, Topic] = _Topics((topic.name, topic) for topic in _ROWS)
-"""All topics by name, in the order in which the agent asks about them."""
+"""All topics by name, in the order of the file."""
 ASKED = tuple(topic.name for topic in _ROWS if topic.asked)
 """The topics that the agent asks about, in this order."""
 WORDS = {name: frozenset(words) for name, words in cast("dict[str, list[str]]", _TABLE).items()}
@@ -128,7 +128,8 @@ def due(
     """Return the topic to ask about next, or an empty string.
 
     The topic with the fewest tries comes first. If several have the fewest, the name comes first. Then come the topics
-    whose `only_with` is the topic `last`, and then the topics in `touched`.
+    whose `only_with` is the topic `last`, and then the topics in `touched`. Topics that do not suit the user's age,
+    that need another fact, or whose typical words the user has not said are left out.
 
     Args:
         wanted: The names of the topics to choose from.

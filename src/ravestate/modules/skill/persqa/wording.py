@@ -1,4 +1,4 @@
-"""The spelling of values, their wording in sentences, and the replies as intents.
+"""The spelling of facts about users (*Ulm* for the topic `home`), their wording in sentences, and replies as intents.
 
 An *intent* names what the agent wants to say; the module `verbaliser` puts it into words.
 """
@@ -21,7 +21,7 @@ Facts = Mapping[str, tuple[str, ...]]
 
 
 def tidy(text: str, topic: Topic) -> str:
-    """Return a value in its usual spelling: names with capitals, the rest in the user's words.
+    """Return a value in its usual spelling: names with capitals, work in lower case, the rest as the user wrote it.
 
     Example:
         >>> tidy("new york", TOPICS["home"]), tidy("Nurse", TOPICS["occupation"]), tidy("ibm", TOPICS["employer"])
@@ -54,7 +54,7 @@ def _key(value: str) -> str:
 
 
 def same(one: str, other: str) -> bool:
-    """Return whether two values mean the same.
+    """Return whether two values are equal, apart from capitals, spaces and an article at the beginning.
 
     Example:
         >>> same("The Red Cross", "red cross")
@@ -64,7 +64,7 @@ def same(one: str, other: str) -> bool:
 
 
 def among(value: str, others: Iterable[str]) -> bool:
-    """Return whether one of `others` means the same as `value`."""
+    """Return whether `value` is the `same` as one of `others`."""
     return any(same(value, other) for other in others)
 
 
@@ -75,13 +75,15 @@ def without(values: Iterable[str], others: Iterable[str]) -> tuple[str, ...]:
 
 
 def alike(value: str, others: Iterable[str]) -> bool:
-    """Return whether `value` equals, contains or is part of one of `others`: *Bremen*, *the city of Bremen*."""
+    """Return whether one of `others` has all words of `value`, or only words of it: *Bremen*, *the city of Bremen*."""
     words = set(_key(value).split())
     return any(words and (words <= set(_key(other).split()) or words >= set(_key(other).split())) for other in others)
 
 
 def mentioned(text: str, known: Facts) -> str:
     """Return the topic of the user's fact that the agent's words mention; empty if they mention none, or several.
+
+    Only sentences with *you*, *your* or *yours* count.
 
     Example:
         >>> mentioned("How do you like Ulm?", {"home": ("Ulm",), "age": ("36",)})

@@ -34,7 +34,7 @@ def choose(settings: Settings) -> Choice:
     server on this machine; a model file in the user's folders; the listening skill (authored phrases).
 
     Raises:
-        PlatformError: The settings name a model that does not exist.
+        PlatformError: The settings name a model that does not exist, or ask for a model file, and there is none.
     """
     backend, name = settings.backend, settings.model
     if backend in ("listen", "transformers"):
@@ -69,7 +69,7 @@ def choose(settings: Settings) -> Choice:
 
 
 def _listed(settings: Settings) -> str:
-    """Return the first chat model of the server that the settings name."""
+    """Return the first chat model of the server that the settings name; ``llama3.2`` if it lists none."""
     assert settings.base_url is not None
     listed: tuple[str, ...] = ()
     if settings.search and find_spec("httpx2") is not None:

@@ -76,7 +76,10 @@ def find_models(places: Iterable[Path] | None = None) -> list[FoundModel]:
 
 
 def best_model(models: Iterable[FoundModel], memory: int | None = None) -> FoundModel | None:
-    """Return the largest fluent model, or else the smallest model; None if no model fits into `memory` (bytes)."""
+    """Return the largest fluent model, or else the smallest model; None if no model fits.
+
+    A model fits if its file is at most `SHARE` of `memory` (in bytes; by default, this machine's memory).
+    """
     most = (memory or _memory()) * SHARE
     fitting = [model for model in models if model.size <= most]
     fluent = [model for model in fitting if model.parameters <= FLUENT]

@@ -17,25 +17,25 @@ PORTS = {11434: "Ollama", 8080: "llama.cpp", 1234: "LM Studio", 8000: "vLLM"}
 """The usual ports of the programs that serve models, in the order of preference."""
 
 PATIENCE = 1.0
-"""The number of seconds to wait for all servers, which are asked at the same time."""
+"""The maximum number of seconds to wait for all servers, which are asked at the same time."""
 
-# Models that do not chat, and models that a server on this machine only passes on from a remote server.
+# Parts of the names of models that do not chat, or that a server on this machine only passes on from a remote server.
 _NOT_CHAT = re.compile(
     r"embed|rerank|minilm|whisper|\btts|\bbge|\be5-|\bgte-|nomic|mxbai|clip\b|diffusion|flux|guard|moderation|[-:]cloud$"
 )
 _SPECIAL = re.compile(r"cod(?:e|er)\b|code|math|vision|\bvl\b|think|reason|\br1\b|-base|sql|\bocr")
 _SIZE = re.compile(r"(?<![\d.])(\d+(?:\.\d+)?)\s?([bm])(?![a-z0-9])")
-_LEAST = 0.45e9  # half a billion parameters, as rounded in models' names
+_LEAST = 0.45e9  # the least number of parameters of a chat model; a name may round it to half a billion
 
 
 @dataclass(frozen=True, slots=True)
 class LocalServer:
-    """A server that lists at least one chat model."""
+    """A server, with the chat models that it lists."""
 
     name: str
     base_url: str
     models: tuple[str, ...]
-    """Names of chat models; the most suitable first."""
+    """Names of chat models. General models come before models for code, images and other special tasks."""
 
 
 class _Facts(BaseModel):
@@ -64,7 +64,8 @@ class _Listing(BaseModel):
 async def find_servers(ports: Mapping[int, str] | None = None) -> list[LocalServer]:
     """Return the servers that answer within a second on these ports of the loopback interface, by default `PORTS`.
 
-    The request contains neither a key nor any words of the user. Web servers without a list of models are left out.
+    The request contains neither a key nor any words of the user. Servers that list no chat model are left out. Without
+    httpx2, the list is empty.
     """
     if find_spec("httpx2") is None:
         return []
@@ -85,7 +86,7 @@ async def _ask(port: int, name: str) -> LocalServer:
 
 
 async def chat_models(base_url: str, key: str = "", patience: float = PATIENCE) -> tuple[str, ...]:
-    """Return the chat models that a server lists, the most suitable first; empty if the server lists no models.
+    """Return the chat models that a server lists, as in `LocalServer.models`; empty if it lists none or does not answer.
 
     Args:
         base_url: The address of the API. For most servers, it ends in ``/v1``.

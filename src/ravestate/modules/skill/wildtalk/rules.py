@@ -271,7 +271,8 @@ async def go_on(ctx: rs.RuleContext) -> rs.Resign | None:
 async def comfort(ctx: rs.RuleContext) -> rs.Resign | None:
     """Answer sorrow, news, corrections and requests for a performance (a joke, a song, a game...).
 
-    The rule also answers statements to which the listening skill has a reply.
+    The rule also answers statements to which the listening skill has a reply. If a language model makes the small talk,
+    the rule answers only requests for a performance.
     """
     seen = ctx.payload(nlp.analysis.changed)
     if seen is None:

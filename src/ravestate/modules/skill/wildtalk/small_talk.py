@@ -213,7 +213,7 @@ def gate_for(ctx: rs.RuleContext, name: str, heard: str) -> Gate:
 
 
 def notes_for(ctx: rs.RuleContext, heard: Heard) -> list[str]:
-    """Return sentences about the time and the user, and the notes of other modules, for the prompt."""
+    """Return sentences about the time, the user and the tone, and the notes of other modules, for the prompt."""
     now = ctx[clock]()
     found = [f"It is {now:%A}, {now:%H:%M}."]
     if heard.user and "name" not in ctx[interloc.facts]:

@@ -13,7 +13,7 @@ from .state import State
 
 
 class ListeningBackend:
-    """A backend that generates nothing. If this backend is chosen, the module answers with the listening skill."""
+    """A backend without a language model. If it is chosen, the module answers with the listening skill."""
 
     async def load(self, progress: Progress | None = None) -> None:
         """Do nothing: there is no model to load."""
@@ -27,7 +27,7 @@ class ListeningBackend:
         seed: int | None = None,
         stop: Sequence[str] = (),
     ) -> AsyncGenerator[str, None]:
-        """Yield a phrase of the listening skill, for callers without an analysis. Only `messages` and `seed` matter."""
+        """Yield the listening skill's answer to the last message. Only `messages` and `seed` matter."""
         said = tuple(message.text for message in messages if message.role == "assistant")
         state = State(recent=said[-24:], said=said[-24:])
         yield Listener().answer(Heard(messages[-1].text), state, random.Random(seed)).text

@@ -1,7 +1,8 @@
 """Choose the answer to an utterance, by the table in order.yaml.
 
 The listener takes the first group with a usable phrase: all its placeholders (*roles*) can be filled, and it was not
-said lately. Games and performances (jokes, songs, stories) come first. `hearing` explains moves and tones.
+said lately. Games and performances (jokes, songs, stories) come first, then corrections of the last answer. `hearing`
+explains moves and tones.
 """
 
 from __future__ import annotations

@@ -16,8 +16,8 @@ from .roles import TURNED
 from .state import State
 
 LONGEST = 9
-"""If a sentence such as *I meant the bread* has no other sign of a repair, it may have at most this many words. A sentence
-that rejects or questions the answer may have three more words."""
+"""The maximum number of words of a sentence such as *I meant the bread*, if nothing else shows a repair. A sentence that
+rejects or questions the answer may have three more words."""
 _LEAD = re.compile(r"^(?:(?:no|nope|wait|oh|but|well|huh|um|uh|eh|hey|sorry|hm+|and|ok|okay|again) )+")
 _MEANT = re.compile(
     r"^i (?:(?P<firm>meant|was (?:asking|talking|speaking)(?: you)?|am (?:asking|talking)|asked(?: you)? (?=about|for|if|whether))"
@@ -59,8 +59,8 @@ class Repair:
     """A correction of the agent's last answer, or a question about it."""
 
     kind: str
-    """``meant``: the user says what they meant; ``puzzled``: they don't understand the answer; ``repeated``: they say
-    that the agent repeats itself; ``why``: they only ask why."""
+    """``meant``: the user rejects the answer, or says what they meant; ``puzzled``: they don't understand the answer;
+    ``repeated``: they say that the agent repeats itself; ``why``: they ask why, and say something else."""
     again: str = ""
     """The words to answer now; empty if the user only complains."""
     thing: str = ""

@@ -31,7 +31,7 @@ _REPEATABLE = re.compile(r"[\w' ,.’-]+")
 
 
 def thing_in(seen: Analysis) -> str:
-    """Return the object of an utterance's last statement with its articles, from the agent's view; empty if there is none."""
+    """Return the object of an utterance's main statement with its articles, from the agent's view; empty if there is none."""
     statement = _statement(seen)
     return "" if statement is None else _thing(seen.tree, statement)
 

@@ -12,7 +12,7 @@ RECENT = 40
 DANGER = 5
 """The number of turns, after words of danger, for which the user counts as in danger."""
 LASTING = 2
-"""The number of turns for which a tone lasts."""
+"""The number of turns for which a tone usually lasts; `tones` has longer times for feelings."""
 
 _OPEN = frozenset(("who", "what", "what's", "when", "where", "why", "which", "how", "whose", "or"))
 

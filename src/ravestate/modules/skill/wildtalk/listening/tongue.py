@@ -10,7 +10,7 @@ _WORD = re.compile(r"[^\W\d_]+")
 
 
 def tongue_of(text: str, tongues: Mapping[str, frozenset[str]]) -> str:
-    """Return the language of a text that is not English; ``?`` for an unknown language; empty for English.
+    """Return the language of a text: a key of `tongues`, ``?`` for another script, or empty for English and anything else.
 
     Example:
         >>> tongue_of("ich bin heute müde", {"de": frozenset(("ich", "bin", "heute"))})
@@ -29,5 +29,5 @@ def tongue_of(text: str, tongues: Mapping[str, frozenset[str]]) -> str:
 
 
 def is_number(text: str) -> bool:
-    """Return whether a text is only a number or signs."""
+    """Return whether a text has digits and no letters."""
     return any(map(str.isdigit, text)) and not any(map(str.isalpha, text))
