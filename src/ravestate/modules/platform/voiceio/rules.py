@@ -309,8 +309,9 @@ async def voice_it(ctx: rs.RuleContext) -> rs.Resign | None:
                 saying.heard = saying.text.strip() if failed else mouth.heard(saying.text)
                 raise
             finally:
-                saying.start = saying.start or ctx.now
-                saying.end = mouth.silent_since or ctx.now
+                saying.end = ctx.now if mouth.silent_since is None else mouth.silent_since
+                if saying.start is None:
+                    saying.start = saying.end
                 mouth.stop()
                 ctx[agent_speaking] = False
                 ctx[held] = False
