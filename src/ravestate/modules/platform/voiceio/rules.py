@@ -136,15 +136,12 @@ async def take_turn(ctx: rs.RuleContext) -> rs.Resign | None:
     talk = ctx[conversation]
     if talk is None or (turn := talk.ear.turn) is None:
         return rs.Resign("the line is closed")
-    from .recogniser import Recognised
-
     try:
         found, silence = await talk.judge(turn)
     except PlatformError as error:
         if talk.closed:
             return rs.Resign("the line is closed")
         ctx.log.error("%s", error)
-        found, silence = Recognised("", 0.0), 0.0
         talk.ear.take()
         ctx.emit(utterance, Utterance("", 0.0, turn.start, turn.end))
         return None
