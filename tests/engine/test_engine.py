@@ -61,3 +61,16 @@ def test_a_time_that_is_not_a_number_is_refused() -> None:
     engine, _ = running()
     with pytest.raises(EngineError, match="NaN"):
         engine.receive(events.Emit("m:go"), float("nan"))
+
+
+@pytest.mark.parametrize("at_rest", [True, False])
+@pytest.mark.parametrize("time", [float("nan"), float("inf")])
+def test_the_engine_advances_only_to_a_finite_time(time: float, at_rest: bool) -> None:
+    engine = Engine(rs.compile()) if at_rest else running()[0]
+    now = engine.now
+    with pytest.raises(ValueError, match=rf"advance\({time}\): write a finite number of seconds"):
+        engine.advance(time)
+    assert engine.now == now
+    engine.advance(-float("inf"))  # has passed already
+    engine.advance(now + 1.0)
+    assert engine.now == now + 1.0

@@ -11,6 +11,7 @@ work) from the policy. It returns them when it comes to rest.
 from __future__ import annotations
 
 from collections.abc import Iterable, Mapping
+from math import inf
 from typing import Any, Final
 
 from ravestate.engine.activation import Activation
@@ -83,7 +84,12 @@ class Engine:
         """Let time pass until `now` (seconds), deadline by deadline.
 
         If `now` is not later than the present time, only handle the deadlines that are due by `now`.
+
+        Raises:
+            ValueError: `now` is NaN or infinity.
         """
+        if not now < inf:  # this is true of NaN, too
+            raise ValueError(f"advance({now!r}): write a finite number of seconds")
         if self._parts is not None:
             self._parts.advance(now)
         else:

@@ -119,10 +119,10 @@ def transcript(note: Callable[[Said], None]) -> Module:
         """Call `note` with the agent's utterances that are over; if the agent is then silent, also with the user's."""
         for one in [one for one in begun if one.over]:
             begun.remove(one)
-            if one.heard.strip():
+            if one.heard.strip() and one.start is not None:
                 cut = one.heard.strip() != one.text.strip()
                 note(Said("agent", one.heard.strip(), one.start, one.end, cut, not one.counts))
-        if not any(one.start for one in begun):
+        if all(one.start is None for one in begun):
             for one in waiting:
                 note(one)
             waiting.clear()

@@ -1,11 +1,18 @@
-"""The carrier edits and deletes the agent's messages, without a homeserver."""
+"""The carrier edits and deletes the agent's messages, and fetches files, without a homeserver."""
 
 import asyncio
+import json
 from types import SimpleNamespace
 from typing import Any
 
-from ravestate.modules.platform.chats import Outgoing
+import pytest
+from nio.crypto import encrypt_attachment
+
+from ravestate.modules.platform.chats import DeliveryError, Outgoing
 from ravestate.modules.platform.matrixio.carrier import MatrixCarrier
+
+SECRET, KEYS = encrypt_attachment(b"a picture")
+"""The bytes of an encrypted file, and the fields with which its sender describes it."""
 
 
 class Client:
@@ -19,6 +26,10 @@ class Client:
 
     async def room_redact(self, room: str, event: str, tx_id: str) -> Any:
         return self._answer("redact", room, event, tx_id)
+
+    async def download(self, url: str) -> Any:
+        self.requests.append(("download", url))
+        return SimpleNamespace(body=SECRET, transport_response=SimpleNamespace(status=200))
 
     def _answer(self, *request: Any) -> Any:
         self.requests.append(request)
@@ -47,3 +58,37 @@ def test_a_second_edit_relates_to_the_first_event_and_not_to_the_first_edit() ->
 def test_a_message_is_deleted_by_a_redaction_with_the_key_of_the_order() -> None:
     _, requests = sent(Outgoing(key="k", chat="!r", kind="delete", to="$old"))
     assert requests == [("redact", "!r", "$old", "k")]
+
+
+def fetched(file: str) -> bytes:
+    return asyncio.run(MatrixCarrier(Client()).fetch(file))  # type: ignore[arg-type]
+
+
+def test_an_encrypted_file_is_decrypted() -> None:
+    assert fetched(json.dumps({**KEYS, "url": "mxc://x/1"})) == b"a picture"
+
+
+@pytest.mark.parametrize(
+    "file",
+    [
+        "https://example.org/x.png",
+        "mxc://[",
+        "[]",
+        json.dumps(KEYS),
+        json.dumps({**KEYS, "url": 1}),
+        json.dumps({**KEYS, "url": "mxc://x/1", "key": {}}),
+        json.dumps({**KEYS, "url": "mxc://x/1", "key": "a text"}),
+        json.dumps({**KEYS, "url": "mxc://x/1", "key": {"k": "AAAA"}}),
+        json.dumps({**KEYS, "url": "mxc://x/1", "hashes": {}}),
+        json.dumps({**KEYS, "url": "mxc://x/1", "hashes": {"sha256": 1}}),
+        json.dumps({**KEYS, "url": "mxc://x/1", "hashes": {"sha256": "é"}}),
+        json.dumps({**KEYS, "url": "mxc://x/1", "hashes": {"sha256": "AAAA"}}),
+        json.dumps({**KEYS, "url": "mxc://x/1", "iv": "_" * 100}),
+        json.dumps({**KEYS, "url": "mxc://x/1", "iv": ""}),
+        json.dumps({**KEYS, "url": "mxc://x/1", "iv": None}),
+    ],
+)
+def test_a_damaged_or_forged_file_is_an_error_of_the_delivery_which_is_not_tried_again(file: str) -> None:
+    with pytest.raises(DeliveryError, match="damaged") as caught:
+        fetched(file)
+    assert caught.value.final

@@ -1,4 +1,4 @@
-"""A failed download of a model keeps the parts that it has fetched, and leaves no empty folder."""
+"""Downloaded models are found by their names. A failed download keeps its parts, and leaves no empty folder."""
 
 from pathlib import Path
 
@@ -26,3 +26,20 @@ def test_a_failed_download_leaves_a_folder_only_if_it_has_fetched_something(
             models.fetch_whisper("tiny.en", str)
         assert [one.name for one in tmp_path.iterdir()] == (["tiny.en.part"] if fetched else [])
         fetched.append(b"half" * 1000)
+
+
+@pytest.mark.parametrize("name", ["tiny.en", "Systran/faster-distil-whisper-small.en"])
+def test_a_fetched_model_is_found_by_the_name_with_which_it_was_fetched(
+    name: str, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """A repository's name has a slash, which a folder's name cannot have."""
+    monkeypatch.setattr(models, "folders", lambda: (tmp_path,))
+
+    def fetch(_: str, output_dir: str) -> None:
+        (Path(output_dir) / "model.bin").write_bytes(b"model")
+
+    monkeypatch.setattr(faster_whisper, "download_model", fetch)
+    with pytest.raises(PlatformError, match=f"ravestate voice get {name}"):
+        models.whisper_model(name)
+    assert models.whisper_model(models.fetch_whisper(name, str).name) == models.whisper_model(name)
+    assert models.whisper_model(name).parent == tmp_path

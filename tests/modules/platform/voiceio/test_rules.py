@@ -430,6 +430,36 @@ def test_a_growing_utterance_ends_with_its_line(monkeypatch: pytest.MonkeyPatch,
         assert sim.said == [WHOLE] and sim.read(rawio.heard) == heard and not sim.read(rs.activity)
 
 
+def test_speech_that_begins_and_is_held_at_the_time_zero_has_these_times(
+    monkeypatch: pytest.MonkeyPatch, tmp_path: Path
+) -> None:
+    """The clock of a context may start at zero."""
+    from ravestate.modules.platform.voiceio.wav_line import WavLine
+    from ravestate.testing import simulate
+
+    script(monkeypatch, "Tell me a story.")
+    spoken: list[Any] = []
+
+    async def serve(_: Any) -> None: ...
+
+    platform = rs.Module("page", requires=[rawio], serve=serve)
+    listener = rs.Module("listener", requires=[voiceio])
+
+    @listener.rule(when=voiceio.speech.max_age(None).detached(), background=True)
+    async def note(ctx: rs.RuleContext) -> None:
+        spoken.append(ctx.payload(voiceio.speech))
+
+    del note
+    with simulate(listener, platform, voiceio, settings=FAST) as sim:
+        sim.put(rawio.sound, WavLine(wav(tmp_path / "in.wav", track(length=20.0))))
+        sim.put(rawio.output, WHOLE)
+        assert sim.read(voiceio.agent_speaking)
+        sim.emit(voiceio.spoke_up)
+        assert sim.read(voiceio.held) and sim.now == 0.0
+        sim.advance(3.0)  # meanwhile, the agent gives way
+    assert [(one.start, one.end, one.over) for one in spoken] == [(0.0, 0.0, True)]
+
+
 def test_a_line_that_a_platform_provides_at_the_start_is_opened_only_once(
     monkeypatch: pytest.MonkeyPatch, tmp_path: Path
 ) -> None:

@@ -6,7 +6,7 @@ from typing import Any
 import pytest
 
 from modules.platform.webio.visit import in_virtual_time
-from ravestate.modules.platform.webio.channel import Channel
+from ravestate.modules.platform.webio.channel import LONGEST, Channel
 from ravestate.modules.platform.webio.fields import CLOSING_CODES, ProtocolError
 
 
@@ -15,9 +15,15 @@ class Socket:
 
     def __init__(self) -> None:
         self.done: list[Any] = []
+        self.frames: list[str | bytes] = []
+        """The client's frames, for `receive`."""
 
     async def accept(self) -> None:
         self.done.append("accept")
+
+    async def receive(self) -> dict[str, Any]:
+        frame = self.frames.pop(0)
+        return {"type": "websocket.receive", "text" if isinstance(frame, str) else "bytes": frame}
 
     async def send_text(self, text: str) -> None:
         self.done.append(text)
@@ -52,3 +58,14 @@ async def test_replies_wait_until_they_are_sent_in_order() -> None:
     assert socket.done == []
     await channel.send_replies()
     assert socket.done == ["one", "two"]
+
+
+@pytest.mark.parametrize("frame", ["a" * LONGEST, "é" * (LONGEST // 2), bytes(LONGEST)], ids=["ascii", "é", "bytes"])
+def test_a_frame_is_too_large_if_it_has_more_bytes_than_the_limit(frame: str | bytes) -> None:
+    socket = Socket()
+    socket.frames = [frame, frame + frame[:1]]
+    channel = channel_on(socket)
+    assert asyncio.run(channel.receive()) == frame
+    with pytest.raises(ProtocolError, match="a frame has at most 131,072 bytes, not 131,07") as caught:
+        asyncio.run(channel.receive())
+    assert caught.value.code == "too-large"

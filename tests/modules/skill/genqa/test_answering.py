@@ -217,3 +217,14 @@ def test_an_answer_to_several_questions_names_no_source_that_has_only_a_part_of_
 ) -> None:
     answers = [Answer("Who?", "She.", source, confidence=0.9) for source in sources]
     assert together(answers).source == named
+
+
+@pytest.mark.parametrize("name", ["Emil", "Émile", "Øystein"])
+def test_a_name_counts_as_an_answer_even_if_its_first_letter_is_not_ascii(tmp_path: Path, name: str) -> None:
+    text = f"At the Fennway mill, {name} grinds the flour."
+    put(tmp_path / "index.sqlite", text, title="Fennway mill")
+    answerer = Answerer(tmp_path / "index.sqlite", collection=False)
+    try:
+        assert answerer.answer("Who grinds the flour at the Fennway mill?").text == text
+    finally:
+        answerer.close()

@@ -106,6 +106,52 @@ def test_a_user_who_was_greeted_hears_no_second_hello() -> None:
         assert sim.said[1:] and sim.said[1] in phrases("returned")
 
 
+@pytest.mark.parametrize("present", [{}, {"page": None}])
+def test_a_user_whose_hello_was_answered_hears_no_second_hello_when_the_camera_recognises_them(
+    present: dict[str, None],
+) -> None:
+    """Without a platform that adds users, the voice is heard before the camera sees the user."""
+    ada = interloc.Recognised("Ada", Node("Person", {"name": "Ada"}))
+    with simulate(hibye) as sim:
+        sim.put(interloc.users, present)
+        sim.advance(120.0)
+        sim.said.clear()
+        sim.say("hello")
+        assert only(sim) in phrases("hello")
+        sim.advance(5.0)
+        if present:
+            sim.emit(interloc.recognised, rs.Entry("page", ada))
+        else:
+            sim.put(interloc.users, {"visionio:1": ada})
+        assert len(sim.said) == 1
+        sim.put(interloc.users, {**sim.read(interloc.users), "visionio:2": None})
+        assert sim.said[1] in phrases("greeting")  # this is another person
+
+
+@pytest.mark.parametrize("farewell", ["", "bye"])
+def test_a_user_who_comes_after_another_user_has_left_is_greeted(farewell: str) -> None:
+    with simulate(hibye) as sim:
+        sim.say("hello")
+        sim.put(interloc.users, {"door": None})
+        assert only(sim) in phrases("hello")
+        if farewell:
+            sim.advance(5.0)
+            sim.say(farewell)
+        sim.put(interloc.users, {})
+        sim.advance(5.0)
+        sim.put(interloc.users, {"door": None})
+        assert len(sim.said) == 3 and sim.said[2] in phrases("greeting")
+
+
+def test_a_user_who_is_recognised_long_after_their_hello_is_greeted_by_name() -> None:
+    ada = interloc.Recognised("Ada", Node("Person", {"name": "Ada"}))
+    with simulate(hibye) as sim:
+        sim.say("hello")
+        sim.advance(120.0)
+        sim.put(interloc.users, {"door": ada})
+        assert sim.said[1] in phrases("recognised", name="Ada")
+
+
 @pytest.mark.parametrize(
     ("text", "intent"),
     [

@@ -8,6 +8,7 @@ import io
 import json
 from collections.abc import Generator
 from typing import Any
+from urllib.parse import urlsplit
 
 import aiohttp
 from nio import AsyncClient, EncryptionError, ErrorResponse, LocalProtocolError  # pyright: ignore[reportMissingTypeStubs]
@@ -87,7 +88,10 @@ class MatrixCarrier:
 
     async def fetch(self, file: str) -> bytes:
         """Return the bytes of a file. `file` is an address, or the JSON that describes an encrypted file."""
-        found: dict[str, Any] = {"url": file} if file.startswith("mxc:") else json.loads(file)
+        with _undamaged():
+            found: dict[str, Any] = {"url": file} if file.startswith("mxc:") else json.loads(file)
+            if urlsplit(str(found["url"])).scheme != "mxc":
+                raise ValueError(f"{found['url']!r} is no mxc address")
         with _delivery():
             client: Any = self._client
             async with asyncio.timeout(FILE):
@@ -95,7 +99,8 @@ class MatrixCarrier:
         data = bytes(_checked(answer).body)
         if "key" not in found:
             return data
-        return decrypt_attachment(data, found["key"]["k"], found["hashes"]["sha256"], found["iv"])
+        with _undamaged():
+            return decrypt_attachment(data, found["key"]["k"], found["hashes"]["sha256"], found["iv"])
 
     async def show_work(self, chat: str, words: str) -> None:
         """Show in the room that the agent is writing. Matrix has no way to show the words so far."""
@@ -115,6 +120,15 @@ def _checked(answer: Any) -> Any:
     if code == "M_LIMIT_EXCEEDED":
         raise DeliveryError(str(answer), wait=(answer.retry_after_ms or 5000) / 1000)
     raise DeliveryError(str(answer), gone=code in GONE, final=code in FINAL, unsure=True)
+
+
+@contextlib.contextmanager
+def _undamaged() -> Generator[None]:
+    """Turn the errors of a damaged or forged file into a `DeliveryError`. Its sender has written all of its fields."""
+    try:
+        yield
+    except (EncryptionError, LookupError, TypeError, ValueError, AttributeError, ArithmeticError) as error:
+        raise DeliveryError(f"the file is damaged: {type(error).__name__}: {error}", final=True) from None
 
 
 @contextlib.contextmanager

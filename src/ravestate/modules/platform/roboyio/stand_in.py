@@ -170,10 +170,12 @@ class StandIn:
             if turns:
                 return
             turns = True
-            while speed:  # a later command may change the speed
-                await self._sleep(TICK)
-                show()
-            turns = False
+            try:
+                while speed:  # a later command may change the speed
+                    await self._sleep(TICK)
+                    show()
+            finally:  # a cancelled axis stands still, and a later command turns it again
+                speed, turns = 0.0, False
 
         return turn
 

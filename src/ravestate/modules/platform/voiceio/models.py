@@ -28,7 +28,8 @@ def whisper_model(name: str) -> Path:
     """Return the folder of a model for faster-whisper.
 
     Args:
-        name: A folder's path, or the name of a folder inside one of `folders()`; empty for the best model there.
+        name: A folder's path, or the name of a folder inside one of `folders()`, or a repository of Hugging Face;
+            empty for the best model there.
 
     Raises:
         PlatformError: There is no such model; the message says how to get one.
@@ -41,10 +42,15 @@ def whisper_model(name: str) -> Path:
             if preferred in found:
                 return found[preferred]
         raise PlatformError("voiceio has no model for speech recognition: `make voice` or `ravestate voice get base`")
-    if name not in found:
+    if _saved(name) not in found:
         known = f"; there are: {', '.join(found)}" if found else ""
         raise PlatformError(f"voiceio has no model {name!r}{known}. To fetch it: ravestate voice get {name}")
-    return found[name]
+    return found[_saved(name)]
+
+
+def _saved(name: str) -> str:
+    """Return the name of the folder of the model `name`."""
+    return name.replace("/", "--")
 
 
 def whisper_models() -> Iterator[tuple[str, Path]]:
@@ -68,7 +74,7 @@ def fetch_whisper(name: str, progress: Callable[[str], None]) -> Path:
         raise PlatformError("voiceio needs faster-whisper: pip install 'ravestate[voice]'")
     from faster_whisper import download_model  # pyright: ignore[reportMissingTypeStubs,reportUnknownVariableType]
 
-    folder = folders()[0] / name.replace("/", "--")
+    folder = folders()[0] / _saved(name)
     progress(f"fetching {name} into {folder}")
     partial = folder.with_name(folder.name + ".part")
     try:

@@ -46,8 +46,10 @@ class Speech:
         self.text = text
         self.whole = whole
         self.counts = counts
-        self.start = self.end = 0.0
-        """The times at which the utterance's sound began and ended (seconds on the context's clock)."""
+        self.start: float | None = None
+        """The time at which the utterance's sound began (seconds on the context's clock); None if it has not begun."""
+        self.end = 0.0
+        """The time at which the utterance's sound ended (seconds on the context's clock)."""
         self.over = False
         """Whether the agent has finished the utterance, or has been cut short."""
         self.heard = ""

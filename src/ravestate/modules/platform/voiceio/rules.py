@@ -136,15 +136,12 @@ async def take_turn(ctx: rs.RuleContext) -> rs.Resign | None:
     talk = ctx[conversation]
     if talk is None or (turn := talk.ear.turn) is None:
         return rs.Resign("the line is closed")
-    from .recogniser import Recognised
-
     try:
         found, silence = await talk.judge(turn)
     except PlatformError as error:
         if talk.closed:
             return rs.Resign("the line is closed")
         ctx.log.error("%s", error)
-        found, silence = Recognised("", 0.0), 0.0
         talk.ear.take()
         ctx.emit(utterance, Utterance("", 0.0, turn.start, turn.end))
         return None
@@ -309,8 +306,9 @@ async def voice_it(ctx: rs.RuleContext) -> rs.Resign | None:
                 saying.heard = saying.text.strip() if failed else mouth.heard(saying.text)
                 raise
             finally:
-                saying.start = saying.start or ctx.now
-                saying.end = mouth.silent_since or ctx.now
+                saying.end = ctx.now if mouth.silent_since is None else mouth.silent_since
+                if saying.start is None:
+                    saying.start = saying.end
                 mouth.stop()
                 ctx[agent_speaking] = False
                 ctx[held] = False

@@ -60,8 +60,9 @@ class Channel:
         if message["type"] == "websocket.disconnect":
             raise WebSocketDisconnect(message.get("code", 1006))
         text: str | bytes = message.get("text") or message.get("bytes") or ""
-        if len(text) > LONGEST:  # most servers themselves refuse such frames
-            raise ProtocolError("too-large", f"a frame has at most {LONGEST:,} bytes, not {len(text):,}")
+        size = len(text.encode(errors="surrogatepass") if isinstance(text, str) else text)
+        if size > LONGEST:  # most servers themselves refuse such frames
+            raise ProtocolError("too-large", f"a frame has at most {LONGEST:,} bytes, not {size:,}")
         return text
 
     async def send(self, text: str) -> None:

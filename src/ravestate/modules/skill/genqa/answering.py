@@ -294,7 +294,8 @@ def _readable(found: Found) -> str:
 
 
 _HOW_MANY = re.compile(r"\bhow (?:many|much) ")
-_NAME = re.compile(r"(?<=[^.!?] )[A-Z][^\W_]+")
+_INNER_WORD = re.compile(r"(?<=[^.!?] )[^\W\d_][^\W_]+")
+"""A word that does not begin a sentence. If it has a capital letter, it is a name."""
 
 
 @cache
@@ -325,7 +326,8 @@ def _can_answer(question: Question, found: Found) -> bool:
         return _any_of("ended").search(found.text) is None
     does = kind is QuestionWord.PERSON and re.search(r"\bwho (?!is|was|are|were)", asked)
     if (does and " by " not in found.text) or (kind is QuestionWord.PLACE and "where" not in asked):
-        return any(name.lower() not in asked for name in (*_NAME.findall(found.text), *found.title.split()))
+        names = [word for word in _INNER_WORD.findall(found.text) if word[0].isupper()]
+        return any(name.lower() not in asked for name in (*names, *found.title.split()))
     return True
 
 

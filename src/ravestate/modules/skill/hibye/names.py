@@ -18,3 +18,7 @@ parted: rs.Slot[float | None] = module.slot("parted", None)
 
 greeted: rs.Slot[float | None] = module.slot("greeted", None)
 """The time of the agent's last greeting, in seconds since the context began; None if there was none."""
+
+answered: rs.Slot[tuple[float, frozenset[str]] | None] = module.slot("answered", None)
+"""The time of the agent's last answer to a greeting, and the keys of the users who were present then; None if there is
+no such answer, or if a user has left since then."""
