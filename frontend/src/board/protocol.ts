@@ -85,7 +85,7 @@ export const VERDICTS = {
   },
 };
 
-/** A spike was born; `source` is the activation whose run raised it, or 0 if code outside the rules raised it. */
+/** A spike was born; `source` is the activation whose run raised it, or 0 if no run raised it. */
 export interface Born {
   kind: "born";
   time: number;
@@ -290,7 +290,7 @@ export interface RuleView {
   background: boolean;
 }
 
-/** A slot got a value; `run` is the activation whose run wrote it, or 0 if code outside the rules wrote it. */
+/** A slot got a value; `run` is the activation whose run wrote it, or 0 if no run wrote it. */
 export interface Set {
   kind: "set";
   time: number;
