@@ -321,6 +321,31 @@ def test_memory_keeps_a_person_with_their_account_until_they_ask_to_be_forgotten
     ]
 
 
+@in_virtual_time
+async def test_only_a_reaction_to_the_agents_own_message_reaches_it(tmp_path: Path) -> None:
+    feeler = rs.Module("feeler", requires=(rawio,))
+
+    @feeler.rule(when=rawio.reaction, writes=rawio.output)
+    async def feel(ctx: rs.RuleContext) -> None:
+        ctx[rawio.output] = ctx.payload(rawio.reaction)
+
+    ada, bob = Person("ada", "Ada"), Person("bob", "Bob")
+    post = Post()
+    async with room(tmp_path, post, parrot, feeler) as opened:
+        opened.receive([hello := letter("Hello", person=ada, group=True)])
+        assert await post.said(2) == ["a: Hello Ada!", "a: Hello"]
+        await past(1.0)
+        for other in (hello.id, "unheard"):
+            opened.receive([letter("👎", id=other, person=bob, kind="reaction", group=True)])
+        opened.receive([letter("👎", "b", id=hello.id, person=bob, kind="reaction", group=True)])
+        await past(1.0)
+        assert len(opened) == 1  # no chat has begun for a reaction
+        opened.receive([letter("👏", id="answer 2", person=ada, kind="reaction", group=True)])
+        assert (await post.said(3))[2:] == ["a: 👏"]
+        opened.receive([letter("🎉", id="answer 2", person=bob, kind="reaction", group=True)])
+        assert (await post.said(5))[3:] == ["a: Hello Bob!", "a: 🎉"]
+
+
 @pytest.mark.parametrize("text", ["👍", "yes"])
 def test_only_an_emoji_that_the_messenger_knows_becomes_a_reaction(tmp_path: Path, text: str) -> None:
     post = Post()

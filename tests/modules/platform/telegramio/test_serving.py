@@ -212,6 +212,20 @@ async def test_a_reaction_of_the_user_reaches_the_agent(bot: Bot, tmp_path: Path
 
 
 @live
+async def test_a_reaction_to_the_message_of_another_person_does_not_reach_the_agent(bot: Bot, tmp_path: Path) -> None:
+    async with running(bot, tmp_path, parrot, host):
+        await bot.say(-5, "Hello Robin", user=7)
+        assert await bot.said(2) == ["-5: Hello User7!", "-5: Hello Robin"]
+        message = await bot.say(-5, "Hello all", user=7)
+        await bot.do("react", chat=-5, id=message["message_id"], emoji="👎", user=8)
+        own = (await bot.do("said", count=2))[1]
+        await bot.do("react", chat=-5, id=own["message_id"], emoji="👍", user=7)
+        assert (await bot.said(3))[2:] == ["-5: you reacted with 👍"]
+        await bot.say(-5, "Is that all, Robin?", user=7)
+        assert (await bot.said(4))[3:] == ["-5: Is that all, Robin?"]
+
+
+@live
 async def test_a_picture_of_20_MB_and_its_caption_reach_the_agent(bot: Bot, tmp_path: Path) -> None:
     async with running(bot, tmp_path):
         size = 20 * 1024 * 1024

@@ -135,7 +135,8 @@ class Room:
         """Store messages from the messenger, and pass them to their chats. The caller may then acknowledge them.
 
         Args:
-            messages: The messages, in order. The room ignores messages that it got before.
+            messages: The messages, in order. The room ignores messages that it got before, and reactions to messages
+                that the agent did not write.
             position: A name and a text to note in the same transaction, e.g. the position in a stream of events.
 
         Raises:
@@ -150,6 +151,8 @@ class Room:
                 self._give(entry)
 
     def _taken(self, message: Incoming) -> Entry | None:
+        if message.kind == "reaction" and not self.store.wrote(message.chat, message.id):
+            return None
         entry = self.store.take(message)
         if entry is not None and message.kind == "left":
             self.store.forget(message.chat)
