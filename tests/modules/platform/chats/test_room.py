@@ -346,6 +346,45 @@ async def test_only_a_reaction_to_the_agents_own_message_reaches_it(tmp_path: Pa
         assert (await post.said(5))[3:] == ["a: Hello Bob!", "a: 🎉"]
 
 
+@in_virtual_time
+async def test_the_agent_is_called_by_its_name_before_the_first_chat(tmp_path: Path) -> None:
+    async with room(tmp_path, Post()) as opened:
+        assert opened.called == {interloc.agent.default}
+        assert len(opened) == 0
+
+
+def namer(name: str, seconds: float = 0.0) -> rs.Module:
+    """Return a module that gives the agent a name some seconds after the start of each context."""
+    module = rs.Module("namer", requires=(rawio, interloc))
+
+    @module.rule(when=rs.startup, writes=interloc.agent)
+    async def give_name(ctx: rs.RuleContext) -> None:
+        await ctx.sleep(seconds)
+        ctx[interloc.agent] = name
+
+    return module
+
+
+@in_virtual_time
+async def test_the_agent_is_called_by_the_name_that_a_rule_gives_it_at_the_start(tmp_path: Path) -> None:
+    post = Post()
+    async with room(tmp_path, post, parrot, namer("Rosie", 2.0)) as opened:
+        assert opened.called == {"Rosie"}
+        assert not post.sent
+        opened.receive([letter("Hello")])
+        assert await post.said(2) == ["a: Hello A!", "a: Hello"]
+
+
+@in_virtual_time
+async def test_a_name_that_comes_late_does_not_keep_the_agent_from_starting(tmp_path: Path) -> None:
+    post, begun = Post(), asyncio.get_running_loop().time()
+    async with room(tmp_path, post, parrot, namer("Rosie", 60.0)) as opened:
+        assert asyncio.get_running_loop().time() - begun < 30.0
+        assert opened.called == {interloc.agent.default}
+        opened.receive([letter("Hello")])
+        assert await post.said(2) == ["a: Hello A!", "a: Hello"]
+
+
 @pytest.mark.parametrize("text", ["👍", "yes"])
 def test_only_an_emoji_that_the_messenger_knows_becomes_a_reaction(tmp_path: Path, text: str) -> None:
     post = Post()

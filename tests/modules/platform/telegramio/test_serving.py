@@ -192,6 +192,19 @@ async def test_in_a_group_the_agent_answers_only_messages_that_address_it(bot: B
 
 
 @live
+async def test_in_a_group_the_agent_answers_to_its_own_name_from_the_start(bot: Bot, tmp_path: Path) -> None:
+    namer = rs.Module("namer", requires=(rawio, interloc))
+
+    @namer.rule(when=rs.startup, writes=interloc.agent)
+    async def give_name(ctx: rs.RuleContext) -> None:
+        ctx[interloc.agent] = "Rosie"
+
+    async with running(bot, tmp_path, parrot, namer):
+        await bot.say(-5, "Hello Rosie", user=7)
+        assert await settled(bot) == ["-5: Hello Rosie"]
+
+
+@live
 async def test_an_answer_of_only_an_emoji_becomes_a_reaction(bot: Bot, tmp_path: Path) -> None:
     async with running(bot, tmp_path):
         message = await bot.say(7, "❤️")
