@@ -2,7 +2,7 @@
 
 import pytest
 
-from ravestate.modules.platform.chats.addressing import addressed, command_in, is_emoji, mentions, without_mention
+from ravestate.modules.platform.chats.addressing import addressed, command_in, mentions, without_mention
 
 
 @pytest.mark.parametrize(
@@ -50,10 +50,3 @@ def test_without_mention_reads_a_text_of_many_spaces() -> None:
     spaces = 200_000 * " "  # with a search that grows with the square of this number, the test would not end
     assert without_mention(f"a{spaces}b", "@robin_bot") == f"a{spaces}b"
     assert without_mention(f"a{spaces}@robin_bot b", "@robin_bot") == "a b"
-
-
-@pytest.mark.parametrize(
-    ("text", "is_one"), [("👍", True), ("🇩🇪", True), ("👍🏽", True), ("☹️", True), ("a", False), ("🎈 ok", False)]
-)
-def test_is_emoji_recognises_a_single_emoji(text: str, is_one: bool) -> None:
-    assert is_emoji(text) is is_one

@@ -321,6 +321,70 @@ def test_memory_keeps_a_person_with_their_account_until_they_ask_to_be_forgotten
     ]
 
 
+@in_virtual_time
+async def test_only_a_reaction_to_the_agents_own_message_reaches_it(tmp_path: Path) -> None:
+    feeler = rs.Module("feeler", requires=(rawio,))
+
+    @feeler.rule(when=rawio.reaction, writes=rawio.output)
+    async def feel(ctx: rs.RuleContext) -> None:
+        ctx[rawio.output] = ctx.payload(rawio.reaction)
+
+    ada, bob = Person("ada", "Ada"), Person("bob", "Bob")
+    post = Post()
+    async with room(tmp_path, post, parrot, feeler) as opened:
+        opened.receive([hello := letter("Hello", person=ada, group=True)])
+        assert await post.said(2) == ["a: Hello Ada!", "a: Hello"]
+        await past(1.0)
+        for other in (hello.id, "unheard"):
+            opened.receive([letter("👎", id=other, person=bob, kind="reaction", group=True)])
+        opened.receive([letter("👎", "b", id=hello.id, person=bob, kind="reaction", group=True)])
+        await past(1.0)
+        assert len(opened) == 1  # no chat has begun for a reaction
+        opened.receive([letter("👏", id="answer 2", person=ada, kind="reaction", group=True)])
+        assert (await post.said(3))[2:] == ["a: 👏"]
+        opened.receive([letter("🎉", id="answer 2", person=bob, kind="reaction", group=True)])
+        assert (await post.said(5))[3:] == ["a: Hello Bob!", "a: 🎉"]
+
+
+@in_virtual_time
+async def test_the_agent_is_called_by_its_name_before_the_first_chat(tmp_path: Path) -> None:
+    async with room(tmp_path, Post()) as opened:
+        assert opened.called == {interloc.agent.default}
+        assert len(opened) == 0
+
+
+def namer(name: str, seconds: float = 0.0) -> rs.Module:
+    """Return a module that gives the agent a name some seconds after the start of each context."""
+    module = rs.Module("namer", requires=(rawio, interloc))
+
+    @module.rule(when=rs.startup, writes=interloc.agent)
+    async def give_name(ctx: rs.RuleContext) -> None:
+        await ctx.sleep(seconds)
+        ctx[interloc.agent] = name
+
+    return module
+
+
+@in_virtual_time
+async def test_the_agent_is_called_by_the_name_that_a_rule_gives_it_at_the_start(tmp_path: Path) -> None:
+    post = Post()
+    async with room(tmp_path, post, parrot, namer("Rosie", 2.0)) as opened:
+        assert opened.called == {"Rosie"}
+        assert not post.sent
+        opened.receive([letter("Hello")])
+        assert await post.said(2) == ["a: Hello A!", "a: Hello"]
+
+
+@in_virtual_time
+async def test_a_name_that_comes_late_does_not_keep_the_agent_from_starting(tmp_path: Path) -> None:
+    post, begun = Post(), asyncio.get_running_loop().time()
+    async with room(tmp_path, post, parrot, namer("Rosie", 60.0)) as opened:
+        assert asyncio.get_running_loop().time() - begun < 30.0
+        assert opened.called == {interloc.agent.default}
+        opened.receive([letter("Hello")])
+        assert await post.said(2) == ["a: Hello A!", "a: Hello"]
+
+
 @pytest.mark.parametrize("text", ["👍", "yes"])
 def test_only_an_emoji_that_the_messenger_knows_becomes_a_reaction(tmp_path: Path, text: str) -> None:
     post = Post()

@@ -12,7 +12,7 @@ import pytest
 from modules.platform.chats.messenger import letter
 from ravestate.errors import PlatformError
 from ravestate.modules.platform.chats import Outgoing, Person
-from ravestate.modules.platform.chats.store import SEEN, TRIES, Answer, Entry, Store
+from ravestate.modules.platform.chats.store import SEEN, TRIES, WROTE, Answer, Entry, Store
 
 
 def opened(path: Path) -> Store:
@@ -110,6 +110,47 @@ def test_after_a_reaction_the_last_message_can_still_be_edited(tmp_path: Path) -
     edit = store.take(letter("two", id="m1", kind="edit"))
     assert edit is not None
     assert store.answers_to(edit) == ["a1"]
+
+
+def test_the_store_knows_which_messages_the_agent_wrote(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    store = opened(tmp_path)
+    entry = store.take(letter("one", id="m1"))
+    orders = [
+        Outgoing(key="1", chat="a", kind="text"),
+        Outgoing(key="2", chat="a", kind="picture"),
+        Outgoing(key="3", chat="a", kind="edit", to="gone"),
+        Outgoing(key="4", chat="a", kind="reaction", to="m1"),
+        Outgoing(key="5", chat="a", kind="delete", to="a0"),
+    ]
+    store.commit([Answer(order) for order in orders], [entry] if entry else ())
+    for id in ("a1", "a2", "a3", "m1", "a0"):
+        store.sent(store.next("a"), id)  # type: ignore[arg-type]
+    store.close()
+    again = opened(tmp_path)
+    assert [id for id in ("a1", "a2", "a3", "m1", "a0", "m0") if again.wrote("a", id)] == ["a1", "a2", "a3"]
+    assert not again.wrote("b", "a1")
+    later = time.time() + WROTE + 1
+    monkeypatch.setattr(time, "time", lambda: later)
+    again.take(letter("two"))
+    assert not again.wrote("a", "a1")
+
+
+def test_while_a_message_is_being_delivered_an_unknown_id_may_be_its_id(tmp_path: Path) -> None:
+    store = opened(tmp_path)
+    entry = store.take(letter("one", id="m1"))
+    store.commit([answer("yes", entry)])
+    item = store.next("a")
+    assert item is not None
+    assert not store.wrote("a", "a1")
+    begun = store.begin(item, "")
+    assert store.wrote("a", "a1")
+    assert not store.wrote("a", "m1")
+    assert not store.wrote("b", "a1")
+    store.sent(begun, "a1")
+    assert store.wrote("a", "a1")
+    assert not store.wrote("a", "a2")
+    store.forget("a")
+    assert not store.wrote("a", "a1")
 
 
 def test_the_answers_to_a_message_are_those_that_were_neither_deleted_nor_replaced(tmp_path: Path) -> None:

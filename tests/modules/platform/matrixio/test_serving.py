@@ -155,6 +155,25 @@ async def test_the_agent_handles_edits_reactions_and_pictures(tmp_path: Path, ro
 
 
 @live("Robin", "Ada", "Bob")
+async def test_a_reaction_to_the_message_of_another_person_does_not_reach_the_agent(
+    tmp_path: Path, robin: Account, ada: Account, bob: Account
+) -> None:
+    room = await ada.room(robin.id, bob.id)
+    await bob.call("POST", f"client/v3/join/{room}")
+    async with running(robin, tmp_path, parrot, host):
+        await ada.say(room, "Hello, Robin")
+        assert await ada.listen(2) == [f"{room}: Hello Ada!", f"{room}: Hello, Robin"]
+        message = await ada.say(room, "Hello all")
+        relation = {"rel_type": "m.annotation", "event_id": message, "key": "👎"}
+        await bob.send(room, "m.reaction", {"m.relates_to": relation})
+        own = [event["event_id"] for event in ada.heard if event["type"] == "m.room.message"]
+        await ada.send(room, "m.reaction", {"m.relates_to": {**relation, "event_id": own[1], "key": "👍"}})
+        assert (await ada.listen(3))[2:] == [f"{room}: you reacted with 👍"]
+        await ada.say(room, "Is that all, Robin?")
+        assert (await ada.listen(4))[3:] == [f"{room}: Is that all, Robin?"]
+
+
+@live("Robin", "Ada", "Bob")
 async def test_in_a_group_the_agent_answers_only_messages_that_address_it(
     tmp_path: Path, robin: Account, ada: Account, bob: Account
 ) -> None:

@@ -380,11 +380,11 @@ class Server:
         self.keep(bot, message)
         return await self.update(bot, "edited_message", message)
 
-    async def do_react(self, bot: str, chat: int, id: int, emoji: str) -> Any:
+    async def do_react(self, bot: str, chat: int, id: int, emoji: str, user: int = 0) -> Any:
         """Let a user react to a message."""
-        user = {"id": chat, "is_bot": False, "first_name": f"User{chat}"}
+        person = {"id": user or chat, "is_bot": False, "first_name": f"User{user or chat}"}
         return await self.update(bot, "message_reaction", {
-            "chat": self.chat(chat), "message_id": id, "user": user, "date": 0, "old_reaction": [],
+            "chat": self.chat(chat), "message_id": id, "user": person, "date": 0, "old_reaction": [],
             "new_reaction": [{"type": "emoji", "emoji": emoji}]})  # fmt: skip
 
     async def do_state(self, bot: str, chat: int, state: str) -> Any:

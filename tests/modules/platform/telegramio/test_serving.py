@@ -192,6 +192,19 @@ async def test_in_a_group_the_agent_answers_only_messages_that_address_it(bot: B
 
 
 @live
+async def test_in_a_group_the_agent_answers_to_its_own_name_from_the_start(bot: Bot, tmp_path: Path) -> None:
+    namer = rs.Module("namer", requires=(rawio, interloc))
+
+    @namer.rule(when=rs.startup, writes=interloc.agent)
+    async def give_name(ctx: rs.RuleContext) -> None:
+        ctx[interloc.agent] = "Rosie"
+
+    async with running(bot, tmp_path, parrot, namer):
+        await bot.say(-5, "Hello Rosie", user=7)
+        assert await settled(bot) == ["-5: Hello Rosie"]
+
+
+@live
 async def test_an_answer_of_only_an_emoji_becomes_a_reaction(bot: Bot, tmp_path: Path) -> None:
     async with running(bot, tmp_path):
         message = await bot.say(7, "❤️")
@@ -209,6 +222,20 @@ async def test_a_reaction_of_the_user_reaches_the_agent(bot: Bot, tmp_path: Path
         [said] = await bot.do("said", count=1)
         await bot.do("react", chat=7, id=said["message_id"], emoji="👍")
         assert (await bot.said(2))[1:] == ["7: you reacted with 👍"]
+
+
+@live
+async def test_a_reaction_to_the_message_of_another_person_does_not_reach_the_agent(bot: Bot, tmp_path: Path) -> None:
+    async with running(bot, tmp_path, parrot, host):
+        await bot.say(-5, "Hello Robin", user=7)
+        assert await bot.said(2) == ["-5: Hello User7!", "-5: Hello Robin"]
+        message = await bot.say(-5, "Hello all", user=7)
+        await bot.do("react", chat=-5, id=message["message_id"], emoji="👎", user=8)
+        own = (await bot.do("said", count=2))[1]
+        await bot.do("react", chat=-5, id=own["message_id"], emoji="👍", user=7)
+        assert (await bot.said(3))[2:] == ["-5: you reacted with 👍"]
+        await bot.say(-5, "Is that all, Robin?", user=7)
+        assert (await bot.said(4))[3:] == ["-5: Is that all, Robin?"]
 
 
 @live

@@ -2,10 +2,11 @@
 
 from __future__ import annotations
 
-from .addressing import addressed, command_in, is_emoji, mentions, without_mention
+from .addressing import addressed, command_in, mentions, without_mention
 from .attempts import Attempts
 from .chat import Chat
 from .commands import COMMANDS, Command
+from .emoji import is_emoji
 from .library import library
 from .messages import Carrier, DeliveryError, Incoming, Outgoing, Person
 from .room import Room

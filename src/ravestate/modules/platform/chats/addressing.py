@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import re
-import unicodedata
 from collections.abc import Iterable
 
 from .commands import COMMANDS
@@ -64,14 +63,3 @@ def without_mention(text: str, mention: str) -> str:
     """
     # Without the first lookbehind, the time would grow with the square of the number of spaces in the text.
     return re.sub(rf"(?<!\s)\s*(?<!\w){re.escape(mention)}(?!\w)[,:]?", "", text, flags=re.IGNORECASE).strip()
-
-
-def is_emoji(text: str) -> bool:
-    """Return whether a text is one emoji.
-
-    Example:
-        >>> is_emoji("❤️"), is_emoji("👩‍🚀"), is_emoji("ok"), is_emoji("")
-        (True, True, False, False)
-    """
-    kinds = [unicodedata.category(character) for character in text]
-    return 0 < len(text) <= 8 and kinds[0] == "So" and all(kind in ("So", "Sk", "Mn", "Cf", "Me") for kind in kinds)

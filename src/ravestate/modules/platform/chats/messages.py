@@ -27,7 +27,8 @@ class Incoming:
     Attributes:
         key: The id of the event on the messenger. `Room` (all chats of the agent) ignores a message with a known key.
         chat: The id of the chat.
-        id: The id of the message; for an ``edit`` or a ``reaction``, the id of the message that it concerns.
+        id: The id of the message; for an ``edit`` or a ``reaction``, the id of the message that it concerns. `Room`
+            ignores a reaction to a message that the agent did not write.
         person: The person who sent the message.
         kind: The kind of the message.
         text: The words, the caption of a picture, the emoji of a reaction, or a command's name without a slash.

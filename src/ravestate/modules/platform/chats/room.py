@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import asyncio
+import contextlib
 import itertools
 import logging
 import re
@@ -10,7 +11,9 @@ import sqlite3
 from collections.abc import Callable, Iterable
 from typing import TYPE_CHECKING, Any, TypeVar, cast
 
+from ravestate.errors import RavestateError
 from ravestate.folders import user_folder
+from ravestate.modules import interloc
 
 from .attempts import back_off
 from .chat import Chat
@@ -30,13 +33,16 @@ LAST_WORDS = 5.0
 """When the agent ends, it has this many seconds for its last answers, and then the same time for their delivery.
 The next process answers and delivers the rest."""
 
+NAMING = 10.0
+"""On entry, the room waits at most this many seconds for the rules that give the agent its name."""
+
 
 class Room:
     """All chats of an agent on a messenger.
 
     Enter a room with ``async with Room(agent, ...) as room``. Then pass each message from the messenger to `receive`.
 
-    On entry, the chats get the messages that the last process left unanswered.
+    On entry, the room finds out the agent's name. Then the chats get the messages that the last process left unanswered.
 
     Args:
         agent: The agent, which makes a context for each chat.
@@ -60,8 +66,8 @@ class Room:
         self.slot: Any = agent.policy.slots[f"{name}:chat"]
         self.command: Any = agent.policy.signals[f"{name}:command"]
         self.called: set[str] = set()
-        """The agent's names (``interloc.agent``) in the chats that have begun. In a group, a message with one of them is for
-        the agent."""
+        """The agent's names (``interloc.agent``): its name from the start, and its names in the chats that have begun. In a
+        group, a message with one of them is for the agent."""
         plain = re.sub(r"[^\w.-]", "_", account)
         self.store = Store(settings.path or user_folder("data") / "chats" / f"{name}-{plain}.sqlite")
         self.log = logging.getLogger(f"ravestate.{name}")
@@ -76,6 +82,11 @@ class Room:
         return len(self._tasks)
 
     async def __aenter__(self) -> Room:
+        try:
+            await self._learn_name()
+        except BaseException:
+            self.store.close()
+            raise
         for chat in self.store.chats_to_send():
             self.sender.wake(chat)
         for entry in self.store.pending():
@@ -97,6 +108,24 @@ class Room:
             await self.sender.close(LAST_WORDS)
         finally:
             self.store.close()
+
+    async def _learn_name(self) -> None:
+        """Note the agent's name. If rules give the agent its name, run a context without users until they have done so."""
+        policy = self.agent.policy
+        if not any(slot.name == interloc.agent.name for rule in policy.rules.values() for slot in rule.writes):
+            self.called.add(interloc.agent.default)
+            return
+        context = self.agent.context()
+        await context.start()
+        try:
+            with contextlib.suppress(TimeoutError):
+                async with asyncio.timeout(NAMING):
+                    await context.quiet(interloc.agent)
+            self.called.add(context.read(interloc.agent))
+        except RavestateError as error:
+            self.log.warning("the agent's name is unknown until its first chat: %s", error)
+        finally:
+            await context.stop(grace=0.0)  # without a user, no rule has to say goodbye
 
     def read(self, events: Iterable[E], read: Callable[[E], Incoming | None]) -> list[Incoming]:
         """Read the messenger's events. Return the messages that `admits` accepts, and those of the kind ``left``.
@@ -135,7 +164,8 @@ class Room:
         """Store messages from the messenger, and pass them to their chats. The caller may then acknowledge them.
 
         Args:
-            messages: The messages, in order. The room ignores messages that it got before.
+            messages: The messages, in order. The room ignores messages that it got before, and reactions to messages
+                that the agent did not write.
             position: A name and a text to note in the same transaction, e.g. the position in a stream of events.
 
         Raises:
@@ -150,6 +180,8 @@ class Room:
                 self._give(entry)
 
     def _taken(self, message: Incoming) -> Entry | None:
+        if message.kind == "reaction" and not self.store.wrote(message.chat, message.id):
+            return None
         entry = self.store.take(message)
         if entry is not None and message.kind == "left":
             self.store.forget(message.chat)

@@ -19,6 +19,9 @@ from .messages import Incoming, Outgoing, Person
 SEEN = 3 * 24 * 3600.0
 """How many seconds the store remembers the keys of messages. Messengers repeat a message for at most a day."""
 
+WROTE = 30 * 24 * 3600.0
+"""How many seconds the store remembers the ids of the agent's own messages."""
+
 TRIES = 3
 """If the agent crashes this many times while it handles a message, the store drops the message as a likely cause."""
 
@@ -35,6 +38,8 @@ CREATE INDEX IF NOT EXISTS not_done ON inbox (chat) WHERE data IS NOT NULL;
 CREATE TABLE IF NOT EXISTS outbox (
     n INTEGER PRIMARY KEY AUTOINCREMENT, chat TEXT, cause INTEGER, state TEXT DEFAULT 'queued', message TEXT, data BLOB);
 CREATE INDEX IF NOT EXISTS to_send ON outbox (chat, state);
+CREATE TABLE IF NOT EXISTS own (chat TEXT, id TEXT, at REAL, PRIMARY KEY (chat, id));
+CREATE INDEX IF NOT EXISTS own_by_age ON own (at);
 CREATE TABLE IF NOT EXISTS people (chat TEXT, id TEXT, PRIMARY KEY (chat, id));
 CREATE TABLE IF NOT EXISTS notes (name TEXT PRIMARY KEY, value TEXT);
 """
@@ -144,8 +149,9 @@ class Store:
     # ------------------------------------------------------------------------------------ messages that came
 
     def _purge(self) -> None:
-        """Delete the keys of old messages."""
+        """Delete the keys of old messages, and the ids of old messages of the agent."""
         self._db.execute("DELETE FROM inbox WHERE at < ? AND data IS NULL", (time.time() - SEEN,))
+        self._db.execute("DELETE FROM own WHERE at < ?", (time.time() - WROTE,))
 
     def take(self, message: Incoming) -> Entry | None:
         """Store a message until it is done. Return its entry, or None if a message with this key came before."""
@@ -280,6 +286,8 @@ class Store:
         with self._transaction():
             message = item.message
             cause = "(SELECT cause FROM outbox WHERE n = ?)"
+            if message.kind not in ("reaction", "delete"):
+                self._db.execute("INSERT OR REPLACE INTO own VALUES (?, ?, ?)", (message.chat, id, time.time()))
             if message.kind in ("text", "voice"):
                 self._db.execute(f"UPDATE inbox SET answer = answer || ? WHERE n = {cause}", (f"\n{id}", item.n))
             elif message.kind in ("edit", "delete"):
@@ -297,6 +305,18 @@ class Store:
         with self._transaction():
             self._db.execute("DELETE FROM outbox WHERE n = ?", (item.n,))
 
+    def wrote(self, chat: str, id: str) -> bool:
+        """Return whether the agent wrote the message with this id in the last `WROTE` seconds.
+
+        During a delivery, the id of the new message is not known yet. So an id without a known message may be its id:
+        then return True.
+        """
+        if self._all("SELECT 1 FROM own WHERE chat = ? AND id = ?", chat, id):
+            return True
+        if self._all("SELECT 1 FROM inbox WHERE chat = ? AND id = ?", chat, id):
+            return False
+        return bool(self._all("SELECT 1 FROM outbox WHERE chat = ? AND state = 'begun' LIMIT 1", chat))
+
     # ------------------------------------------------------------------------------------ chats, people and notes
 
     def knows(self, chat: str, person: Person) -> bool:
@@ -308,10 +328,14 @@ class Store:
         with self._transaction():
             self._db.execute("DELETE FROM people WHERE chat = ?", (chat,))
             self._db.execute("DELETE FROM outbox WHERE chat = ?", (chat,))
+            self._db.execute("DELETE FROM own WHERE chat = ?", (chat,))
             self._db.execute("UPDATE inbox SET data = NULL WHERE chat = ?", (chat,))
 
     def move(self, chat: str, to: str) -> None:
-        """Give a chat another id. Deliveries that have begun start again under the new id."""
+        """Give a chat another id. Deliveries that have begun start again under the new id.
+
+        The agent's earlier messages keep the old id of the chat, because the new chat may number its messages anew.
+        """
         with self._transaction():
             self._db.execute("UPDATE outbox SET state = 'queued' WHERE chat = ? AND state = 'begun'", (chat,))
             for table in ("inbox", "outbox", "people"):

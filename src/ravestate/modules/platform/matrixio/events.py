@@ -43,7 +43,7 @@ def incoming(event: Event, room: MatrixRoom, me: str, names: Iterable[str]) -> I
         return None
     person = Person(event.sender, room.user_name(event.sender))
     group = room.member_count > 2
-    if isinstance(event, ReactionEvent):
+    if isinstance(event, ReactionEvent):  # it does not name the author of the message, so `Room` looks for them
         return _made(event, room, event.reacts_to, "reaction", person, event.key, group=group)
     if not isinstance(event, RoomMessage):
         return None

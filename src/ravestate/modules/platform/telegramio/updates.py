@@ -71,6 +71,7 @@ def _made(
 
 
 def _reaction(update: Update, reaction: MessageReactionUpdated) -> Incoming | None:
+    """Return the new emoji of a reaction to any message, whose author the update does not name; None if none is new."""
     emoji = [each.emoji for each in reaction.new_reaction if isinstance(each, ReactionTypeEmoji)]
     old = {each.emoji for each in reaction.old_reaction if isinstance(each, ReactionTypeEmoji)}
     new = next((str(each) for each in emoji if each not in old), None)

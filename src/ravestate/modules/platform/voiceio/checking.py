@@ -137,7 +137,9 @@ def _devices(settings: Settings) -> list[Line]:
         why = "no device: plug one in, speak through the web page (`make demo`), or name WAV files"
     for part, name, channel in (("microphone", settings.source, 1), ("loudspeaker", settings.sink, 2)):
         if not name:
-            lines.append(Line(part, False, False, "none: the sound is dropped"))
+            dropped = part == "loudspeaker"  # an empty sink is a choice; an empty source leaves the agent deaf
+            text = "none: the sound is dropped" if dropped else "voiceio.source is empty: name a device or a file"
+            lines.append(Line(part, dropped, False, text))
             continue
         if is_file(name):
             lines.append(Line(part, True, False, f"the file {name}"))
