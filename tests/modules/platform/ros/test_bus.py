@@ -82,6 +82,23 @@ def test_a_node_waits_for_its_bus_and_reconnects_after_a_restart() -> None:
     asyncio.run(main())
 
 
+def test_a_node_that_is_closed_while_it_connects_closes_its_socket(monkeypatch: pytest.MonkeyPatch) -> None:
+    tried: list[socket.socket] = []
+
+    async def never(sock: socket.socket, address: Any) -> None:
+        tried.append(sock)
+        await asyncio.get_running_loop().create_future()
+
+    async def main() -> None:
+        monkeypatch.setattr(asyncio.get_running_loop(), "sock_connect", never)
+        async with opened(ros2.make_node(ros2.Settings(backend="bus"))) as node:
+            node.start()
+            await until(lambda: tried)
+        await until(lambda: tried[0].fileno() == -1)
+
+    asyncio.run(asyncio.wait_for(main(), PATIENCE))
+
+
 def test_wrong_types_and_addresses_are_refused_with_a_reason(caplog: pytest.LogCaptureFixture) -> None:
     async def main() -> None:
         async with Bus(0) as bus, opened(on(bus)) as one, opened(on(bus)) as other:

@@ -280,6 +280,9 @@ class BusLink:
                     }
                     self._handle(Kind.NOTE, 0, 0, memoryview(json.dumps(note).encode()))
                 await asyncio.sleep(AGAIN)
+            except asyncio.CancelledError:
+                sock.close()
+                raise
         sock.setsockopt(socket.IPPROTO_TCP, socket.TCP_NODELAY, 1)
         self._frames = Frames(sock, self._take, self._broken)
         self._frames.tell(Kind.OPEN, self._config)
