@@ -217,7 +217,8 @@ class Declarations:
 
         Args:
             module, name, topic, type, qos: As for `subscriber`.
-            latch: Whether subscribers that come later get the last message.
+            latch: Whether subscribers that come later get the last message. In ROS 2, a `qos` with the durability
+                ``transient_local`` means the same.
 
         Raises:
             DeclarationError: An argument is wrong.
