@@ -64,6 +64,26 @@ def test_a_late_subscriber_gets_a_large_latched_message() -> None:
     asyncio.run(main())
 
 
+def test_a_late_subscriber_of_another_type_gets_a_warning_instead_of_a_latched_message(
+    caplog: pytest.LogCaptureFixture,
+) -> None:
+    async def main() -> None:
+        async with Bus(0) as bus, opened(on(bus)) as one, opened(on(bus)) as other:
+            sign = one.advertise("/sign", "std_msgs/String", qos=LATCHED)
+            sign.publish("abc")
+            await until(lambda: bus.find("publisher", "/sign"))
+            heard: list[Any] = []
+            other.subscribe("/sign", "std_msgs/Float64", heard.append, qos=LATCHED)
+            signs: list[str] = []
+            other.subscribe("/sign", "std_msgs/String", lambda message: signs.append(message.data), qos=LATCHED)
+            await until(lambda: signs)  # all that the bus sends to the earlier subscriber has come, too
+            assert (signs, heard) == (["abc"], [])
+            assert "/sign carries std_msgs/msg/String, not std_msgs/msg/Float64" in caplog.text
+            assert "a message is not of the type" not in caplog.text
+
+    asyncio.run(main())
+
+
 def test_a_node_waits_for_its_bus_and_reconnects_after_a_restart() -> None:
     async def main() -> None:
         async with Bus(0) as bus:
