@@ -108,6 +108,9 @@ def served(monkeypatch: pytest.MonkeyPatch) -> list[Agent]:
 
         def announce(self, _: object) -> None: ...
 
+        def link(self, _: str) -> str:
+            return "http://127.0.0.1"
+
         async def until_failed(self) -> None: ...
 
     monkeypatch.setattr(server, "Server", Stub)

@@ -1,15 +1,19 @@
 """``ravestate robot`` serves a stand-in for a robot, together with an agent and its chat page."""
 
+import contextlib
 import os
 import signal
 import subprocess
 import sys
 import urllib.request
+import webbrowser
+from collections.abc import Callable, Generator
 from pathlib import Path
 
 import pytest
 
 from ravestate.cli import main
+from ravestate.runtime import run as runtime_run
 
 PARROT = """
 import ravestate as rs
@@ -37,6 +41,29 @@ def test_the_robots_page_and_the_chat_page_are_served_and_end_cleanly(tmp_path: 
     process.send_signal(signal.SIGINT)
     _, errors = process.communicate(timeout=20)
     assert (process.returncode, errors) == (0, "")
+
+
+@pytest.mark.parametrize(
+    ("screen", "more", "opens"),
+    [(True, [], True), (False, [], False), (False, ["--browser"], True), (True, ["--no-browser"], False)],
+)
+def test_the_robots_page_opens_by_itself_if_the_session_has_a_screen(
+    screen: bool, more: list[str], opens: bool, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+) -> None:
+    @contextlib.contextmanager
+    def asked_at_once(stop: Callable[[], None]) -> Generator[None]:
+        stop()
+        yield
+
+    opened: list[str] = []
+    monkeypatch.setattr(webbrowser, "open", opened.append)
+    monkeypatch.setattr(runtime_run, "asked_by_signals", asked_at_once)
+    monkeypatch.setattr(sys, "platform", "linux")
+    monkeypatch.setattr(sys.stdout, "isatty", lambda: screen)
+    monkeypatch.setenv("DISPLAY", ":0")
+    assert main(["robot", "--on", "bus", "--bus", "127.0.0.1:0", "--port", "0", *more]) == 0
+    address = capsys.readouterr().out.split()[3].rstrip(",")
+    assert opened == ([address] if opens else [])
 
 
 @pytest.mark.parametrize(

@@ -4,14 +4,11 @@ from __future__ import annotations
 
 import argparse
 import asyncio
-import os
-import sys
-import webbrowser
 from pathlib import Path
 from typing import TYPE_CHECKING
 
 from ravestate.cli import agent as agents
-from ravestate.cli import complete
+from ravestate.cli import browser, complete
 from ravestate.errors import PlatformError, UsageError
 
 if TYPE_CHECKING:
@@ -27,12 +24,7 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
     parser.add_argument(
         "--open", dest="recording", metavar="TRACE.json", help="look at a recorded trace instead of an agent"
     )
-    parser.add_argument(
-        "--browser",
-        action=argparse.BooleanOptionalAction,
-        default=None,
-        help="open a browser; the default if the session has a screen",
-    )
+    browser.add_argument(parser)
 
 
 def run(options: argparse.Namespace) -> int:
@@ -62,7 +54,7 @@ def run(options: argparse.Namespace) -> int:
     return 0
 
 
-async def _serve(made: Agent, beside: list[BaseRoute], inside: str, talks: bool, browser: bool | None) -> None:
+async def _serve(made: Agent, beside: list[BaseRoute], inside: str, talks: bool, opens: bool | None) -> None:
     from ravestate.modules.platform.webio.server import Server
     from ravestate.runtime.run import asked_by_signals, until_first_ends
 
@@ -70,13 +62,5 @@ async def _serve(made: Agent, beside: list[BaseRoute], inside: str, talks: bool,
     with asked_by_signals(stopped.set):
         async with Server(made, beside, inside) as server:
             server.announce({"agent": "", "board": inside} if talks else {"board": inside})
-            if browser or (browser is None and _has_browser()):
-                await asyncio.to_thread(webbrowser.open, server.link("" if talks else inside))
+            await browser.open_page(server.link("" if talks else inside), opens)
             await until_first_ends(stopped.wait(), server.until_failed())
-
-
-def _has_browser() -> bool:
-    """Return whether this session has a terminal, and a screen for a browser."""
-    if not sys.stdout.isatty():
-        return False
-    return sys.platform in ("darwin", "win32") or bool(os.environ.get("DISPLAY") or os.environ.get("WAYLAND_DISPLAY"))

@@ -4,12 +4,11 @@ from __future__ import annotations
 
 import argparse
 import asyncio
-import webbrowser
 from contextlib import AsyncExitStack
 from typing import TYPE_CHECKING, Any
 
 from ravestate.cli import agent as agents
-from ravestate.cli import complete
+from ravestate.cli import browser, complete
 from ravestate.errors import PlatformError
 from ravestate.settings import load_settings
 
@@ -31,7 +30,7 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
     )
     parser.add_argument("--bus", help="the address of the bus (default: the setting roboyio.bus)")
     parser.add_argument("--port", type=int, default=8421, help="the port of the page; 0 takes a free one")
-    parser.add_argument("--browser", action=argparse.BooleanOptionalAction, default=None, help="open a browser")
+    browser.add_argument(parser)
 
 
 def run(options: argparse.Namespace) -> int:
@@ -82,8 +81,7 @@ async def _serve(options: argparse.Namespace, chosen: AgentSpec, alone: bool) ->
         server = await stack.enter_async_context(PageServer(stand_in, options.port))
         where = "the built-in bus" if link == "bus" else f"ROS {link[-1]}"
         print(f"{robot.name} is at {server.address}, its topics are on {where} (Ctrl-C ends it)", flush=True)
-        if options.browser:
-            await asyncio.to_thread(webbrowser.open, server.address)
+        await browser.open_page(server.address, options.browser)
         if alone:
             stopped = asyncio.Event()
             with asked_by_signals(stopped.set):

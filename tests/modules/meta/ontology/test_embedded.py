@@ -19,7 +19,7 @@ import pytest
 from modules.meta.ontology.conftest import Open
 from ravestate.errors import PlatformError, RuleError
 from ravestate.modules import ontology
-from ravestate.modules.meta.ontology import embedded
+from ravestate.modules.meta.ontology import database, embedded
 from ravestate.modules.meta.ontology.opening import open_memory
 
 HERE = Path(__file__).parent
@@ -254,9 +254,25 @@ def test_a_damaged_log_is_read_up_to_the_damage_and_kept(
         memory.close().result()
         copy = Path(f"{log}.damaged-{number}")
         assert copy.read_bytes() == damaged
-        assert f"memory {path} has a damaged log" in caplog.text and str(copy) in caplog.text
+        read = "nothing in it can be read" if damage == "rubbish" else "memory has read the part before the damage"
+        assert f"memory {path} has a damaged log: {read}" in caplog.text and str(copy) in caplog.text
         if damage != "rubbish":
             break
+
+
+def test_a_log_that_cannot_be_read_even_in_part_is_dropped_and_the_warning_says_so(
+    file: Path, open_here: Open, caplog: pytest.LogCaptureFixture, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    def survives(path: Path, *, whole_log: bool) -> bool:
+        return whole_log and database.survives(path)
+
+    monkeypatch.setattr(embedded, "survives", survives)
+    log = Path(f"{file}.wal")
+    log.write_bytes(b"rubbish" * 99)
+    memory = open_here(path=file)
+    assert [node["name"] for node in memory.find("Person").result()] == ["Ada"]
+    assert f"memory {file} has a damaged log: nothing in it can be read" in caplog.text
+    assert Path(f"{log}.damaged-1").read_bytes() == b"rubbish" * 99
 
 
 def test_a_database_of_another_program_is_refused(tmp_path: Path) -> None:

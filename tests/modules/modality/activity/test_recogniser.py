@@ -8,6 +8,7 @@ import pytest
 from modules.modality.activity.performers import camera, performance, starter
 from ravestate.modules.modality.activity import Pose, Recogniser
 from ravestate.modules.modality.activity.recogniser import Recognition
+from ravestate.modules.modality.activity.skeleton import NOSE
 
 RIGHT = 0.9
 """The minimum share of held-out performances of known activities that are recognised."""
@@ -94,6 +95,16 @@ def test_an_activity_is_recognised_despite_a_few_broken_poses(recogniser: Recogn
         Pose(pose.at, pose.points * np.nan if number % 7 == 3 else pose.points) for number, pose in enumerate(poses)
     ]
     assert recogniser.recognise(broken).name == "boxing"
+
+
+def test_activities_are_recognised_if_the_head_is_invisible(recogniser: Recogniser) -> None:
+    rng, right = np.random.default_rng(5), 0
+    for name in starter.KNOWN:
+        poses = performance(name, 3)
+        for pose in poses:  # an invisible landmark is somewhere
+            pose.points[NOSE] = [*rng.normal(0.0, 0.3, 3), 0.1]
+        right += recogniser.recognise(poses).name == name
+    assert right >= RIGHT * len(starter.KNOWN)
 
 
 def test_the_starter_set_is_up_to_date(recogniser: Recogniser) -> None:

@@ -64,6 +64,26 @@ def test_a_late_subscriber_gets_a_large_latched_message() -> None:
     asyncio.run(main())
 
 
+def test_a_late_subscriber_of_another_type_gets_a_warning_instead_of_a_latched_message(
+    caplog: pytest.LogCaptureFixture,
+) -> None:
+    async def main() -> None:
+        async with Bus(0) as bus, opened(on(bus)) as one, opened(on(bus)) as other:
+            sign = one.advertise("/sign", "std_msgs/String", qos=LATCHED)
+            sign.publish("abc")
+            await until(lambda: bus.find("publisher", "/sign"))
+            heard: list[Any] = []
+            other.subscribe("/sign", "std_msgs/Float64", heard.append, qos=LATCHED)
+            signs: list[str] = []
+            other.subscribe("/sign", "std_msgs/String", lambda message: signs.append(message.data), qos=LATCHED)
+            await until(lambda: signs)  # all that the bus sends to the earlier subscriber has come, too
+            assert (signs, heard) == (["abc"], [])
+            assert "/sign carries std_msgs/msg/String, not std_msgs/msg/Float64" in caplog.text
+            assert "a message is not of the type" not in caplog.text
+
+    asyncio.run(main())
+
+
 def test_a_node_waits_for_its_bus_and_reconnects_after_a_restart() -> None:
     async def main() -> None:
         async with Bus(0) as bus:
@@ -80,6 +100,23 @@ def test_a_node_waits_for_its_bus_and_reconnects_after_a_restart() -> None:
             assert heard == ["round 0", "round 1"]
 
     asyncio.run(main())
+
+
+def test_a_node_that_is_closed_while_it_connects_closes_its_socket(monkeypatch: pytest.MonkeyPatch) -> None:
+    tried: list[socket.socket] = []
+
+    async def never(sock: socket.socket, address: Any) -> None:
+        tried.append(sock)
+        await asyncio.get_running_loop().create_future()
+
+    async def main() -> None:
+        monkeypatch.setattr(asyncio.get_running_loop(), "sock_connect", never)
+        async with opened(ros2.make_node(ros2.Settings(backend="bus"))) as node:
+            node.start()
+            await until(lambda: tried)
+        await until(lambda: tried[0].fileno() == -1)
+
+    asyncio.run(asyncio.wait_for(main(), PATIENCE))
 
 
 def test_wrong_types_and_addresses_are_refused_with_a_reason(caplog: pytest.LogCaptureFixture) -> None:

@@ -9,8 +9,9 @@ import pytest
 
 import ravestate as rs
 from modules.platform.ros.networks import PATIENCE, Network, until
-from ravestate.modules import ros2
+from ravestate.modules import ros1, ros2
 from ravestate.modules.platform.ros import Bus, quality
+from ravestate.modules.platform.ros.places import Place
 from ravestate.modules.platform.ros.rules import follow_clock
 
 ALL = quality(None, depth=10, latch=False)
@@ -142,6 +143,48 @@ def test_an_agent_without_ros_ends_with_an_error_that_says_what_to_install() -> 
         async with rs.Context(agent, settings=settings) as context, asyncio.timeout(PATIENCE):
             with pytest.raises(rs.PlatformError, match="/nowhere/python"):
                 await context.until_stopped()
+
+    asyncio.run(main())
+
+
+@pytest.mark.parametrize("kind", ["subscriber", "publisher", "service", "action"])
+@pytest.mark.parametrize("ros", [ros1, ros2], ids=["ros1", "ros2"])
+def test_an_agent_whose_search_finds_no_ros_ends_with_that_error_alone(
+    ros: Any, kind: str, monkeypatch: pytest.MonkeyPatch, caplog: pytest.LogCaptureFixture
+) -> None:
+    def missing(*_: Any) -> Place:
+        raise rs.PlatformError("install ROS first")
+
+    name = ros.module.name
+    monkeypatch.setattr(f"ravestate.modules.platform.{name}.names.{name}_place", missing)
+    agent = rs.Module("agent", requires=[ros])
+    if kind in ("subscriber", "publisher"):
+        getattr(ros, kind)(agent, "bound", topic="/bound", type="std_msgs/String")
+    elif kind == "service":
+        ros.service(agent, "bound", service="/bound", type="std_srvs/SetBool")
+    else:
+        ros.action(agent, "bound", action="/bound", type="actionlib/Test")
+
+    async def main() -> None:
+        async with rs.Context(agent) as context, asyncio.timeout(PATIENCE):
+            with pytest.raises(rs.PlatformError, match="install ROS first"):
+                await context.until_stopped()
+
+    asyncio.run(main())
+    assert not caplog.records
+
+
+def test_an_agent_without_slots_of_ros_needs_no_ros(monkeypatch: pytest.MonkeyPatch) -> None:
+    def missing(*_: Any) -> Place:
+        raise rs.PlatformError("install ROS first")
+
+    monkeypatch.setattr("ravestate.modules.platform.ros1.names.ros1_place", missing)
+
+    async def main() -> None:
+        async with rs.Context(rs.Module("agent", requires=[ros1])) as context, asyncio.timeout(PATIENCE):
+            await until(lambda: context.read(ros1.node))
+            context.ask_to_stop()
+            await context.until_stopped()
 
     asyncio.run(main())
 

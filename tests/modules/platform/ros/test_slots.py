@@ -8,9 +8,10 @@ from typing import Any
 import pytest
 
 import ravestate as rs
-from modules.platform.ros.networks import OWN, PATIENCE, Network, free_port, the_loop, until
+from modules.platform.ros.networks import OWN, PATIENCE, Network, free_port, opened, the_loop, until
 from ravestate.errors import PlatformError
 from ravestate.modules import ros1, ros2
+from ravestate.modules.platform.ros import Bus, quality
 from ravestate.testing import simulate
 
 
@@ -238,6 +239,43 @@ def test_in_a_simulation_the_test_writes_the_slots_and_no_node_connects() -> Non
         sim.put(chat, {"data": "hello"})
         assert sim.read(answer) == {"data": "HELLO"}
         assert sim.read(ros2.node) is None
+
+
+@pytest.mark.parametrize("qos", ["latched", {"durability": "transient_local"}])
+def test_a_publisher_with_a_transient_local_qos_keeps_its_last_message_for_late_subscribers(qos: Any) -> None:
+    agent = rs.Module("agent")
+    sign = ros2.publisher(agent, "sign", topic="/sign", type="std_msgs/String", qos=qos)
+
+    async def hear(bus: Bus) -> str:
+        async with opened(ros2.make_node(ros2.Settings(backend="bus", bus=bus.address))) as late:
+            signs: list[str] = []
+            late.subscribe(
+                "/sign", "std_msgs/String", lambda message: signs.append(message.data),
+                qos=quality(qos, depth=1, latch=False),
+            )  # fmt: skip
+            await until(lambda: signs)
+            return signs[0]
+
+    async def main() -> None:
+        port = free_port()
+        settings = {"ros2": {"backend": "bus", "bus": f"127.0.0.1:{port}"}}
+        async with rs.Context(agent, settings=settings) as context:
+            await until(lambda: context.read(ros2.node))
+            context.put(sign, "open")
+            for _ in range(2):  # after a restart of the bus, the node sends the message again
+                async with Bus(port) as bus:
+                    assert await hear(bus) == "open"
+
+    the_loop().run(asyncio.wait_for(main(), PATIENCE))
+
+
+def test_a_publisher_of_ros_1_ignores_the_qos_of_ros_2() -> None:
+    async def main() -> None:
+        async with Bus(0) as bus, opened(ros1.make_node(ros1.Settings(backend="bus", bus=bus.address))) as node:
+            chat = node.advertise("/chat", "std_msgs/String", qos=quality("latched", depth=1, latch=False))
+            assert not chat.latches
+
+    the_loop().run(main())
 
 
 @pytest.mark.parametrize(

@@ -233,8 +233,11 @@ class EmbeddedStore:
             raise PlatformError(
                 f"memory {self._path} has a damaged log, which cannot be copied before its repair: {error.strerror}"
             ) from error
-        what = "memory has read the part before the damage; a copy of the damaged log is"
-        log.warning("memory %s has a damaged log: %s %s", self._path, what, copy)
+        if self._files.log_size():  # the opening has cut the log off at the damage
+            read = "memory has read the part before the damage"
+        else:
+            read = "nothing in it can be read, so the newest writes are missing"
+        log.warning("memory %s has a damaged log: %s; a copy of the damaged log is %s", self._path, read, copy)
         return ""
 
     def _set_orphans_aside(self, orphans: list[Path]) -> None:

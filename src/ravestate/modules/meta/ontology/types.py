@@ -93,7 +93,7 @@ class Types:
         return sorted(
             {
                 (source, target)
-                for first, second in self._relations[relation].ends
+                for first, second in self.relating(relation).ends
                 for source in self.subtypes(first)
                 for target in self.subtypes(second)
             }

@@ -14,7 +14,7 @@ if TYPE_CHECKING:
     import numpy as np
     from numpy.typing import NDArray
 
-LEFT_WRIST, RIGHT_WRIST = 3, 4
+HEAD, LEFT_WRIST, RIGHT_WRIST = 0, 3, 4
 TRACKS = 12
 """The number of coordinates whose pairwise correlations are features: those of the wrists, the height and depth of the
 knees, the depth of the torso, and the height of the shoulders."""
@@ -56,7 +56,7 @@ def features_of(skeleton: Skeleton) -> NDArray[np.float64]:
     parts.append(np.array([common[i, j] for i, j in combinations(range(TRACKS), 2)]))
     parts.append(np.array([_rotation(tracks[:, [a, b]]) for a, b in ((0, 1), (1, 2), (0, 2), (3, 4), (4, 5), (3, 5))]))
     left, right = tracks[:, :3], tracks[:, 3:6]
-    face = joints[:, 0]
+    face = np.full_like(joints[:, HEAD], np.nan) if missing[HEAD] else joints[:, HEAD]
     apart = np.linalg.norm(left - right, axis=1)
     near = [np.linalg.norm(hand - face, axis=1) for hand in (left, right)]
     parts.append(np.array([apart.mean(), np.sqrt(apart.std()), apart.min()]))

@@ -108,11 +108,8 @@ class Bus:
 
     def publish(self, binding: Mapping[str, Any], body: memoryview) -> None:
         """Pass on a message to all subscribers of its topic. A subscriber with another type gets a warning instead."""
-        for node, channel, other in self.find("subscriber", binding["name"]):
-            if other["type"] == binding["type"]:
-                node.outlets[channel].put(body)
-            else:
-                node.note(channel, f"{binding['name']} carries {binding['type']}, not {other['type']}")
+        for node, channel, _ in self.find("subscriber", binding["name"]):
+            node.get(channel, binding, body)
 
     def call(self, caller: _BusNode, channel: int, number: int, body: memoryview) -> None:
         """Pass on a call to the server of its service. If there is none, or it has another type, answer with a fault."""
@@ -188,8 +185,13 @@ class _BusNode:
         self._latched: dict[int, memoryview] = {}
         self.frames = Frames(connection, self._handle, lambda: bus.leave(self))
 
-    def note(self, channel: int, text: str) -> None:
-        """Send a warning about a channel."""
+    def get(self, channel: int, publisher: Mapping[str, Any], body: memoryview) -> None:
+        """Send a message of a publisher to a subscriber of this node. If their types differ, send a warning instead."""
+        own = self.bindings[channel]
+        if own["type"] == publisher["type"]:
+            self.outlets[channel].put(body)
+            return
+        text = f"{own['name']} carries {publisher['type']}, not {own['type']}"
         self.frames.tell(Kind.NOTE, {"text": text, "level": "warning"}, channel)
 
     def _handle(self, kind: Kind, channel: int, number: int, body: memoryview) -> None:
@@ -199,10 +201,10 @@ class _BusNode:
         elif kind is Kind.BIND:
             binding = self.bindings[channel] = json.loads(bytes(body))
             if binding["kind"] == "subscriber":
-                outlet = self.outlets[channel] = Outlet(self.frames, channel, binding["latest"])
-                for node, other, _ in bus.find("publisher", binding["name"]):
+                self.outlets[channel] = Outlet(self.frames, channel, binding["latest"])
+                for node, other, publisher in bus.find("publisher", binding["name"]):
                     if other in node._latched:
-                        outlet.put(node._latched[other])
+                        self.get(channel, publisher, node._latched[other])
         elif kind is Kind.UNBIND:
             self.bindings.pop(channel, None)
             self.outlets.pop(channel, None)
@@ -280,6 +282,9 @@ class BusLink:
                     }
                     self._handle(Kind.NOTE, 0, 0, memoryview(json.dumps(note).encode()))
                 await asyncio.sleep(AGAIN)
+            except asyncio.CancelledError:
+                sock.close()
+                raise
         sock.setsockopt(socket.IPPROTO_TCP, socket.TCP_NODELAY, 1)
         self._frames = Frames(sock, self._take, self._broken)
         self._frames.tell(Kind.OPEN, self._config)

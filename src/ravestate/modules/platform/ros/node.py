@@ -161,8 +161,10 @@ class Node:
     def advertise(self, topic: str, type: str, *, latch: bool = False, qos: Mapping[str, Any]) -> Channel:
         """Return a channel on which to publish.
 
-        With `latch`, late subscribers get the last message. In ROS 2, the durability in `qos` must say so, too.
+        With `latch`, late subscribers get the last message. In ROS 2, the durability in `qos` must be
+        ``transient_local``, too; this durability alone means the same as `latch`.
         """
+        latch = latch or (self.types.version == 2 and qos["durability"] == "transient_local")
         return self._open("publisher", topic, type, {"latch": latch, "depth": qos["depth"], "qos": dict(qos)})
 
     def client(self, service: str, type: str, *, timeout: float) -> Channel:

@@ -18,7 +18,7 @@ from .naming import quality
 from .node import MakeLink, Node
 from .places import Place
 from .process import BridgeProcess
-from .slots import bind_all
+from .slots import bind_all, is_bound
 from .types import Types
 
 
@@ -104,12 +104,16 @@ def connect(
     async def connect(ctx: rs.RuleContext) -> rs.Resign | None:
         """Make the node, and open the channels of all slots that publish or call. In virtual time, do nothing.
 
-        With `use_sim_time`, follow the topic ``/clock``. Slots that subscribe have rules of their own.
+        With `use_sim_time`, follow the topic ``/clock``. Slots that subscribe have rules of their own. If the agent has
+        a slot of this version of ROS, and ROS is not installed here, the agent ends with a `PlatformError`.
         """
         if getattr(asyncio.get_running_loop(), "is_virtual", False):
             return rs.Resign("time is virtual: a test writes the slots, or plays a bag")
-        made = ctx[node] = make_node(ctx.settings, ctx.stop)  # early, so that other rules for startup find the node
+        made = make_node(ctx.settings, ctx.stop)
         try:
+            if is_bound(ctx, version):
+                made.start()
+            ctx[node] = made  # before the first `await`, so that other rules for startup find the node
             await made.prepare()
             bind_all(ctx, made, version)
             if ctx.settings.use_sim_time:

@@ -217,7 +217,8 @@ class Declarations:
 
         Args:
             module, name, topic, type, qos: As for `subscriber`.
-            latch: Whether subscribers that come later get the last message.
+            latch: Whether subscribers that come later get the last message. In ROS 2, a `qos` with the durability
+                ``transient_local`` means the same.
 
         Raises:
             DeclarationError: An argument is wrong.
@@ -394,11 +395,16 @@ def _failure(task: asyncio.Task[Any]) -> str:
     return "the goal was cancelled" if task.cancelled() else str(task.exception() or "")
 
 
+def is_bound(ctx: rs.RuleContext, version: int) -> bool:
+    """Return whether a slot of the context is bound to a topic, service or action of this version of ROS."""
+    return any(isinstance(slot, TopicSlot) and slot.binding.version == version for slot in ctx.policy.slots.values())
+
+
 def bind_all(ctx: rs.RuleContext, node: Node, version: int) -> None:
     """Open the channels of a context's slots that publish or call, and add the rules that cancel goals."""
     for slot in ctx.policy.slots.values():
         if isinstance(slot, TopicSlot) and slot.binding.version == version and slot.binding.kind != "subscriber":
-            with contextlib.suppress(PlatformError):  # the slot's own rule reports the error when it is first used
+            with contextlib.suppress(PlatformError):  # an unknown type; the slot's own rule reports it at its first use
                 _channel(node, slot)
             if isinstance(slot, ActionSlot):
                 _cancel_with_writers(ctx, node, slot)
