@@ -1,9 +1,9 @@
 """How long do many users of the web page wait for an answer?
 
 500 users connect within half a minute. Then, for half a minute, each user says something every 10 s, at random moments. The
-server and the users are separate processes on one machine. The agent has all text modules except the language model. In its
-place, a rule repeats the input, so that an answer to the wrong user is noticed. The users measure the time from an input to
-its answer.
+server and the users are separate processes on one machine. The agent has all modules of the complete text agent
+(``ravestate.cli.complete.COMPLETE``) except small talk. In its place, a rule repeats the input, so that an answer to the
+wrong user is noticed. The users measure the time from an input to its answer.
 
 The peer is a bare echo server on the same library (uvicorn).
 """
@@ -26,6 +26,7 @@ from benchmarks.bench import Bench
 from benchmarks.child import Child
 from benchmarks.figures import Figure, compare, measured
 from benchmarks.peers.wire import serve
+from ravestate.cli.complete import COMPLETE
 
 USERS = 500
 EVERY = 10.0
@@ -37,8 +38,8 @@ LIMIT = 0.2
 GIVEN_UP = 15.0
 """Seconds after which an answer counts as lost."""
 
-NOT_ASKED = {"conio", "webio", "wildtalk", "telegramio"}
-"""Built-in modules that take no part: other platforms, and the language model."""
+TEXT = tuple(name for name in COMPLETE if name != "wildtalk")
+"""The names of the agent's modules, without the platform."""
 
 GREETING = "hello"
 """An utterance that the agent answers in its own words."""
@@ -91,10 +92,9 @@ def worked() -> float:
 
 async def serve_agent(tell: Any) -> None:
     """Serve the agent on its page."""
-    import importlib
-
     import ravestate as rs
-    from ravestate.modules import BUILT_IN, rawio, webio
+    from ravestate import modules
+    from ravestate.modules import rawio, webio
     from ravestate.modules.platform.webio.server import Server
     from ravestate.runtime.agent import Agent
 
@@ -104,13 +104,9 @@ async def serve_agent(tell: Any) -> None:
     async def say_again(ctx: rs.RuleContext) -> None:
         ctx[rawio.output] = f"You said: {ctx.payload(rawio.input.changed)}"
 
-    modules = [
-        importlib.import_module(f"ravestate.modules.{kind}.{name}")
-        for name, kind in BUILT_IN.items()
-        if name not in NOT_ASKED
-    ]
+    text = [getattr(modules, name) for name in TEXT]
     settings = {"webio": {"port": 0, "per_address": 2 * USERS}}
-    async with Server(Agent(*modules, stand_in, webio, settings=settings)) as server:
+    async with Server(Agent(*text, stand_in, webio, settings=settings)) as server:
         tell(server.port)
         await asyncio.Event().wait()
 

@@ -85,14 +85,14 @@ MISSPELT = """
         ('rawio.outptu] = "Hello!"', "rawio.output] = ctx.sleep(1)\n        ctx.sleep(1)", "await: rule greeter:greet"),
     ],
 )
-def test_findings_that_make_a_rule_fail_give_exit_code_1(
+def test_findings_of_rules_that_do_not_do_what_their_source_says_give_exit_code_1(
     right: str, wrong: str, finding: str, folder: Path, capsys: Capture
 ) -> None:
     write(folder / "greeter.py", MISSPELT.replace(right, wrong))
     code, out, errors = call(capsys, "check", "./greeter.py")
     assert (code, errors) == (1, "")
     assert finding in out
-    assert out.endswith("no faults, 1 finding (1 makes a rule fail at run time)\n")
+    assert out.endswith("no faults, 1 finding (1 means that a rule fails, or does not do what its source says)\n")
 
 
 def test_help_explains_the_exit_code(capsys: Capture) -> None:

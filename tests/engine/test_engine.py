@@ -57,10 +57,16 @@ def test_a_run_ends_in_one_of_four_ways() -> None:
     engine.receive(events.Finish(run, "done"), 1.0)  # the refused event has not ended the run
 
 
-def test_a_time_that_is_not_a_number_is_refused() -> None:
-    engine, _ = running()
-    with pytest.raises(EngineError, match="NaN"):
-        engine.receive(events.Emit("m:go"), float("nan"))
+@pytest.mark.parametrize("at_rest", [True, False])
+@pytest.mark.parametrize("time", [float("nan"), float("inf")])
+def test_the_engine_receives_events_only_at_a_finite_time(time: float, at_rest: bool) -> None:
+    engine = Engine(rs.compile()) if at_rest else running()[0]
+    now = engine.now
+    with pytest.raises(ValueError, match=f"the time is {time}: write a finite number of seconds"):
+        engine.receive(events.Stop(), time)
+    assert engine.now == now
+    engine.receive(events.Stop(), -float("inf"))  # has passed already
+    assert engine.now == now
 
 
 @pytest.mark.parametrize("at_rest", [True, False])

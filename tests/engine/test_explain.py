@@ -110,3 +110,15 @@ def test_an_explanation_says_which_missing_signal_is_an_input() -> None:
     text = str(explain(engine, engine.policy.rule_plan("m:both")))
     assert "lacks m:topic\n" in text
     assert "lacks m:pointed, an input\n" in text
+
+
+@pytest.mark.parametrize(("limit", "lines"), [(0, 0), (1, 1), (99, 3)])
+def test_the_history_has_at_most_the_given_number_of_lines(limit: int, lines: int) -> None:
+    m = rs.Module("m")
+    declared(m, "answer", when=m.signal("go"))
+    engine = Engine(rs.compile(m))
+    records: list[Record] = []
+    engine.tracer = records.append
+    assert runs(engine, Emit("m:go"))
+    history = explain(engine, engine.policy.rule_plan("m:answer"), records, limit).history
+    assert len(history) == lines

@@ -2,11 +2,15 @@
 
 from __future__ import annotations
 
+import asyncio
 from importlib import import_module
 from pathlib import Path
+from typing import Any
 from xml.etree import ElementTree
 
 import pytest
+
+from ravestate.cli.complete import COMPLETE
 
 ROOT = Path(__file__).parents[2]
 SVG = "{http://www.w3.org/2000/svg}"
@@ -19,6 +23,28 @@ def test_each_benchmark_can_be_imported(question: str, monkeypatch: pytest.Monke
     asked = import_module(f"benchmarks.questions.{question}")
     assert callable(asked.ask)
     assert question in import_module("benchmarks.questions").QUESTIONS
+
+
+def test_the_agent_of_the_benchmark_web_users_has_the_modules_of_the_text_agent_without_small_talk(
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    monkeypatch.syspath_prepend(str(ROOT))
+    web_users = import_module("benchmarks.questions.web_users")
+    agents: list[list[str]] = []
+
+    class Stop(Exception):
+        pass
+
+    def server(agent: Any) -> None:
+        agents.append([module.name for module in agent.policy.modules])
+        raise Stop
+
+    monkeypatch.setattr("ravestate.modules.platform.webio.server.Server", server)
+    with pytest.raises(Stop):
+        asyncio.run(web_users.serve_agent(print))
+    [names] = agents
+    assert set(COMPLETE) - {"wildtalk"} <= set(names)
+    assert sorted(set(names) - set(COMPLETE)) == ["core", "rawio", "stand_in", "webio"]
 
 
 def test_a_page_gets_only_the_tables_for_which_it_has_a_place(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:

@@ -18,12 +18,12 @@ if TYPE_CHECKING:
 
 def add_arguments(parser: argparse.ArgumentParser) -> None:
     agent.add_arguments(parser)
-    parser.epilog = "Exit code 1: the agent has faults, or a rule would fail at run time (findings: undeclared, unknown, await, assignment)."
+    parser.epilog = "Exit code 1: the agent has faults, or a rule fails or does not do what its source says (findings: undeclared, unknown, await, assignment)."
     parser.add_argument("--utilities", action="store_true", help="also list every rule with its utility in nats")
 
 
 def run(options: argparse.Namespace) -> int:
-    """Run the command; return 1 if there are faults, or findings that make a rule fail at run time, else 0."""
+    """Run the command; return 1 if there are faults, or findings of the kinds in `BREAKING`, else 0."""
     from ravestate.errors import DeclarationError, DeclarationErrors
     from ravestate.modules import BUILT_IN
     from ravestate.policy.compile import compile_policy
@@ -55,7 +55,8 @@ def run(options: argparse.Namespace) -> int:
     sizes = {"rule": len(policy.rules), "signal": len(policy.signals), "slot": len(policy.slots)}
     counts = ", ".join(_count(number, noun) for noun, number in sizes.items())
     breaking = sum(finding.kind in BREAKING for finding in findings)
-    note = f" ({breaking} make{'s' if breaking == 1 else ''} a rule fail at run time)" if breaking else ""
+    means = "means" if breaking == 1 else "mean"
+    note = f" ({breaking} {means} that a rule fails, or does not do what its source says)" if breaking else ""
     print(f"{counts}: no faults, {_count(len(findings), 'finding')}{note}")
     return 1 if breaking else 0
 

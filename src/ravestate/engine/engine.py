@@ -68,7 +68,8 @@ class Engine:
             RuleError: The value for a collection is not a mapping.
             EngineError: The event comes from a run that is over, or its type or its `Finish.kind` is unknown. Or the
                 event stores or removes an item, but the slot is no collection. Or the event adds a policy that does not
-                extend the present one. Or the time is NaN.
+                extend the present one.
+            ValueError: `now` is NaN or infinity.
         """
         rested = self._parts is None
         parts = self.parts_at(now)

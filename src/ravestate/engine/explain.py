@@ -118,6 +118,11 @@ def explain(engine: Engine, rule: RulePlan, records: Iterable[Record] = (), limi
     """Return the state of a rule, with at most `limit` lines of its history from `records`, the trace."""
     state = engine.state
     records = [*records]
+    history = tuple(
+        f"{seconds(record.time)}: {words}"
+        for record in records
+        if getattr(record, "rule", None) == rule.name and (words := words_of(record))
+    )
     explanation = Explanation(
         rule.name,
         state.now,
@@ -125,11 +130,7 @@ def explain(engine: Engine, rule: RulePlan, records: Iterable[Record] = (), limi
         tuple(_clause(state, clause) for clause in rule.clauses),
         tuple(activations(state).get(rule.index, ())),
         tuple(_missing(state, rule, records)),
-        tuple(
-            f"{seconds(record.time)}: {words}"
-            for record in records
-            if getattr(record, "rule", None) == rule.name and (words := words_of(record))
-        )[-limit:],
+        history[max(len(history) - limit, 0) :],
         frozenset(need.signal.name for clause in rule.clauses for need in clause.needs if need.signal.input),
     )
     engine.rest()

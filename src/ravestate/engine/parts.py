@@ -57,16 +57,19 @@ class Parts:
         """Let time pass until `now` (seconds), before an event. If `now` is not later than the present, do nothing.
 
         Raises:
-            EngineError: The time is NaN.
+            ValueError: The time is NaN or infinity.
         """
         state = self.state
         if now > state.now:
+            due = state.deadlines.earliest <= now  # also if there is no deadline and the time is infinity
+            if due and now == NEVER:
+                raise ValueError(f"the time is {now!r}: write a finite number of seconds")
             self.holdings.waits.pass_time()
-            if state.deadlines.earliest <= now:
+            if due:
                 self.advance(now)
             state.now = now
         elif now != now:  # NaN is neither before nor after
-            raise EngineError("the time is not a number of seconds: it is NaN")
+            raise ValueError(f"the time is {now!r}: write a finite number of seconds")
 
     def advance(self, now: float) -> None:
         """Let time pass until `now` (seconds), deadline by deadline.

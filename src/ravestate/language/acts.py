@@ -5,6 +5,7 @@ from __future__ import annotations
 import re
 from collections.abc import Collection, Mapping, Sequence
 
+from .asides import LAUGHTER
 from .contractions import word_set
 from .feelings import clauses
 from .lexicon import loaded_lexicon
@@ -35,7 +36,7 @@ _PAUSE = re.compile(r"[,;:()–—…]+|\s-+\s")
 _ASKED = re.compile(r"(?:will|can|could|would|should|do|did|are) (?:i|you|we|they)\b", re.IGNORECASE)
 """The beginning of a question. The question "will you be here tomorrow" is not a farewell."""
 _PLAYFUL = re.compile(
-    r"\b(?:lol|lmao|rofl|jk|(?:just |only )kidding|joking|ha(?:ha)+h?|he(?:he)+|hihi|kinda funny|but (?:\w+ )*(?:funny|cute|sweet|love you"
+    rf"\b(?:{LAUGHTER}|jk|(?:just |only )kidding|joking|kinda funny|but (?:\w+ )*(?:funny|cute|sweet|love you"
     r"|like you|lovable|charming))\b|[:;]-?[)DPp](?!\w)|[😂🤣😄😜😉😅😆😁]",
     re.IGNORECASE,
 )

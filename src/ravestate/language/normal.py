@@ -4,7 +4,8 @@ A well-written sentence stays as it is. Other sentences are mended in four steps
 
 1. words: write out the short forms in `WRITTEN`, drop letters repeated for emphasis, and mend typing errors and the
    capitals of names with the `Lexicon`;
-2. punctuation: add a space after a comma, a comma after an interjection, a full stop before a question;
+2. punctuation: add a space after a comma, a comma after an interjection and around a written-out *tbh*, a full stop
+   before a question;
 3. the start and end of each sentence: add a capital, and a full stop or question mark;
 4. slips of the tongue: leave out the words that the user takes back, as in *I live in Bern, I mean Bonn*.
 """
@@ -127,6 +128,8 @@ _PARTS_OF_NAMES = word_set("new north south east west san santa los las saint el
 """First words of place names: *New York*."""
 _AT = word_set("at by until till before after from since around about is and")
 """Words after which the figure 2 means a time or a number, not *to*."""
+_SET_OFF = frozenset(["to be honest"])
+"""Written forms that have commas around them."""
 _COUNTED = word_set("times days weeks months years hours minutes people")
 _FIRST = frozenset(entry.partition(" ")[0] for entry in WRITTEN if " " in entry)
 
@@ -285,11 +288,20 @@ def _mended(pieces: Sequence[_Piece], known: dict[str, str], lexicon: Lexicon | 
             piece.text = piece.text if piece.text != piece.low else known[piece.low]
         elif written := _written(piece, following, before.rpartition(" ")[2], lexicon):
             piece.text = _cased(written, piece)
+            if written in _SET_OFF:
+                _add_commas(piece, following[0])
         elif lexicon is not None and piece.text == piece.low:
             piece.text = _by_lexicon(piece.text, before, following[0] if following else None, lexicon)
         mended.append(piece)
         index += size
     return mended
+
+
+def _add_commas(*pieces: _Piece) -> None:
+    """Add a comma before each word that follows another word of its sentence without a mark."""
+    for piece in pieces:
+        if piece.text and not piece.first and piece.gap.isspace():
+            piece.gap = "," + piece.gap
 
 
 def _longest(piece: _Piece, following: Sequence[_Piece], before: str) -> int:

@@ -7,7 +7,8 @@ from ravestate.modules.meta.nlp.preprocessing import preprocess
 
 
 @given(
-    st.text() | st.lists(st.sampled_from(["I", "like", "LIKE", "do", "not", " ", "’", "\x00", "\ud800"])).map("".join)
+    st.text()
+    | st.lists(st.sampled_from(["I", "like", "LIKE", "do", "not", "lol", " ", "’", "\x00", "\ud800"])).map("".join)
 )
 def test_preprocessing_keeps_the_length_of_a_text_and_makes_it_valid_unicode(text: str) -> None:
     copy = preprocess(text)

@@ -43,3 +43,15 @@ def test_a_fetched_model_is_found_by_the_name_with_which_it_was_fetched(
         models.whisper_model(name)
     assert models.whisper_model(models.fetch_whisper(name, str).name) == models.whisper_model(name)
     assert models.whisper_model(name).parent == tmp_path
+
+
+def test_an_unfinished_download_is_no_model(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    """The file ``model.bin`` may be complete although other files are missing."""
+    monkeypatch.setattr(models, "folders", lambda: (tmp_path,))
+    for name in ("base.part", "tiny.en"):
+        (tmp_path / name).mkdir()
+        (tmp_path / name / "model.bin").write_bytes(b"model")
+    assert dict(models.whisper_models()) == {"tiny.en": tmp_path / "tiny.en"}
+    assert models.whisper_model("").name == "tiny.en"
+    with pytest.raises(PlatformError, match=r"no model 'base'; there are: tiny\.en"):
+        models.whisper_model("base")

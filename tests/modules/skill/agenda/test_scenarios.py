@@ -207,6 +207,22 @@ def test_a_rule_of_the_designer_can_react_to_the_answer_to_a_goal() -> None:
         assert sim.said[-1] == "I see."
 
 
+def test_a_goal_without_an_event_of_success_raises_pursued_once() -> None:
+    guide = agent()
+    greeting = agenda.goal(guide, "greeting", say="Hello there.")
+    times: list[float] = []
+
+    @guide.rule(when=greeting.pursued.max_age(None).detached())
+    async def note(ctx: rs.RuleContext) -> None:
+        times.append(ctx.now)
+
+    with simulate(guide, settings=PATIENT) as sim:
+        sim.advance(100.0)
+        assert sim.said == ["Hello there."]
+        assert times == [pytest.approx(5.0)]
+        assert greeting.state(sim).status == "done"
+
+
 def test_while_the_user_talks_no_goal_is_pursued() -> None:
     guide = agent()
     agenda.goal(guide, "game", say="A game?")

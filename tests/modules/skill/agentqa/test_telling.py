@@ -92,3 +92,25 @@ def test_a_fact_at_the_beginning_of_a_sentence_gets_a_capital() -> None:
 
 def test_braces_in_a_fact_are_plain_text() -> None:
     assert told(Topic("x", (), ("I like {likes}.",)), likes="{curly} things") == ("I like {curly} things.",)
+
+
+def test_if_the_answers_about_a_value_need_an_unknown_fact_the_topic_answers_without_them() -> None:
+    named = (("hobbies", ("I do {it} with {friends}.",)),)
+    hobbies: dict[str, Fact] = {"hobbies": ("chess", "darts")}
+    topic = Topic("hobbies", (), ("I like {hobbies}.",), ("I have no hobby.",), named, ("No, I do not.",))
+    assert told(topic, "do you like chess", **hobbies) == ("I like chess and darts.",)
+    assert told(topic, "do you like chess", **hobbies, friends="Ann") == ("I do chess with Ann.",)
+    assert told(topic, "do you like golf", **hobbies) == ("No, I do not.",)
+
+
+def test_another_fact_that_has_the_value_may_have_the_answer() -> None:
+    named = (("hobbies", ("I do {it} with {friends}.",)), ("likes", ("Yes, {it}.",)))
+    topic = Topic("hobbies", (), ("I like {hobbies}.",), named=named)
+    assert told(topic, "do you like chess", hobbies=("chess",), likes=("chess",)) == ("Yes, chess.",)
+
+
+def test_if_no_answer_about_a_value_is_known_other_modules_may_answer() -> None:
+    """The agent does not deny the value."""
+    named = (("hobbies", ("I do {it} with {friends}.",)),)
+    topic = Topic("hobbies", (), ("I am {mood_of_today}.",), ("I have no hobby.",), named, ("No, I do not.",))
+    assert told(topic, "do you like chess", hobbies=("chess",)) is None

@@ -348,6 +348,60 @@ def test_the_bored_agent_offers_the_game_once() -> None:
         assert charades.offer.state(sim).status == "done"
 
 
+def test_an_offer_that_lapses_is_no_refusal_and_comes_once_more() -> None:
+    refusals: list[float] = []
+    listener = rs.Module("listener", requires=[charades])
+
+    @listener.rule(when=charades.declined.detached())
+    async def note(ctx: rs.RuleContext) -> None:
+        refusals.append(ctx.now)
+
+    with agent(listener) as sim:
+        run(
+            sim,
+            """
+            wait 20
+            = offer
+            wait 30
+            =
+            """,
+        )
+        assert charades.offer.state(sim).status == "pursued"
+        assert not sim.read(charades.game).is_on and not sim.read(agenda.topics)
+        run(
+            sim,
+            """
+            wait 110
+            = offer
+            wait 300
+            =
+            """,
+        )
+        assert charades.offer.state(sim) == agenda.GoalState("dropped", 2, pytest.approx(147, abs=15))
+        assert refusals == []
+    with agent(listener) as sim:
+        run(sim, "wait 20\n= offer\n> no\n= declined")
+        assert len(refusals) == 1
+
+
+def test_the_offer_that_the_user_prompts_counts_as_one_of_the_two_offers() -> None:
+    with agent() as sim:
+        run(
+            sim,
+            """
+            > I am so bored
+            = offer
+            wait 110
+            =
+            wait 50
+            = offer
+            wait 300
+            =
+            """,
+        )
+        assert charades.offer.state(sim).status == "dropped"
+
+
 def test_the_agent_offers_the_game_to_a_user_who_is_bored() -> None:
     with agent() as sim:
         run(

@@ -45,6 +45,25 @@ def test_titles_and_hints_are_searched_by_their_stems(index: Index) -> None:
 
 
 @pytest.mark.parametrize(
+    ("title", "name"),
+    [
+        ("Notes", "notes"),
+        ("The Tram", "tram"),
+        ("Österreich", "Österreich"),
+        ("Österreich", "österreich"),
+        ("österreich", "ÖSTERREICH"),
+        ("The Élysée Palace", "the élysée palace"),
+        ("Élysée Palace", "The ÉLYSÉE PALACE"),
+        ("Санкт-Петербург", "санкт-петербург"),
+    ],
+)
+def test_the_case_of_a_title_does_not_matter(index: Index, title: str, name: str) -> None:
+    index.put(file(), [*notes("It is red.", title=title), *notes("It is blue.", title="Other")])
+    assert index.title_of(name) == title
+    assert index.title_of(name[1:]) == ""
+
+
+@pytest.mark.parametrize(
     "words", [('"',), ("a OR b",), ("NEAR(",), ("*",), ("title:x",), ("\0",), ("",), ("é" * 9999,)]
 )
 def test_no_word_of_a_query_acts_as_a_search_operator(index: Index, words: tuple[str, ...]) -> None:

@@ -43,6 +43,22 @@ NOT_TOLD = [
 ]
 
 
+@pytest.mark.parametrize("frame", ["{} lol", "{}, haha!", "{} hahaha lol", "lol {}", "{} tbh", "tbh {}"])
+@pytest.mark.parametrize(
+    ("statement", "text", "object"),
+    [
+        ("i painted a dragon", "you painted a dragon", "dragon"),
+        ("my sister Rosa plays the violin", "your sister Rosa plays the violin", "violin"),
+        ("Jonas lives in Ghent", "Jonas lives in Ghent", "Ghent"),
+    ],
+)
+def test_a_free_statement_is_kept_without_laughter_and_other_asides(
+    frame: str, statement: str, text: str, object: str
+) -> None:
+    [one], _ = told_in(Reader(analyse(frame.format(statement), pipeline(""))))
+    assert (one.text, one.object) == (text, object)
+
+
 @pytest.mark.parametrize(("told", "question", "answer"), TOLD, ids=[told for told, _, _ in TOLD])
 def test_a_free_statement_answers_a_question_in_this_and_a_later_session(
     file: Path, told: str, question: str, answer: str

@@ -4,6 +4,8 @@ from __future__ import annotations
 
 import re
 
+from ravestate.language.asides import asides
+
 READ_AS = {"have": "like", "stay": "live", "stays": "live", "teaches": "study"}
 """A replacement → the lemma of the word that it replaces. In short sentences, the small pipelines often mistake *like*
 for a preposition, and *lives* and *studies* for nouns. They handle *have*, *stays* and *teaches* correctly."""
@@ -35,13 +37,15 @@ _NO_WAIT = re.compile(r"(?:^|(?<=[.!?,;] ))no(?= wait,)", re.IGNORECASE)
 
 
 def preprocess(text: str) -> str:
-    """Return `text` with some words replaced by words of the same length, and control characters by spaces.
+    """Return `text` with some words replaced by words of the same length, and asides and control characters by spaces.
 
     Example:
         >>> preprocess("do you like\\x00it?")
         'do you have it?'
     """
     copy = text.translate(_UNREADABLE).replace("’", "'")
+    for start, end in [*asides(copy)]:  # the parser would take "lol" for a noun
+        copy = copy[:start] + " " * (end - start) + copy[end:]
     for found in _LIKES.finditer(copy):
         start, end = found.span(found.lastgroup or 0)
         copy = copy[:start] + "have" + copy[end:]

@@ -18,6 +18,9 @@ PREFERRED = ("base", "base.en", "small.en", "small", "tiny.en", "tiny")
 
 SMART_TURN = "smart-turn-*.onnx"
 
+UNFINISHED = ".part"
+"""The suffix of a folder into which a model is downloaded."""
+
 
 def folders() -> tuple[Path, ...]:
     """Return the folders that may contain models: the user's folder, and the folder of this Python environment."""
@@ -54,10 +57,11 @@ def _saved(name: str) -> str:
 
 
 def whisper_models() -> Iterator[tuple[str, Path]]:
-    """Yield the name and the folder of each model for faster-whisper."""
+    """Yield the name and the folder of each model for faster-whisper. Leave out unfinished downloads."""
     for folder in folders():
         for file in sorted(folder.glob("*/model.bin")):
-            yield file.parent.name, file.parent
+            if file.parent.suffix != UNFINISHED:
+                yield file.parent.name, file.parent
 
 
 def fetch_whisper(name: str, progress: Callable[[str], None]) -> Path:
@@ -76,7 +80,7 @@ def fetch_whisper(name: str, progress: Callable[[str], None]) -> Path:
 
     folder = folders()[0] / _saved(name)
     progress(f"fetching {name} into {folder}")
-    partial = folder.with_name(folder.name + ".part")
+    partial = folder.with_name(folder.name + UNFINISHED)
     try:
         partial.mkdir(parents=True, exist_ok=True)
         with warnings.catch_warnings(action="ignore"):  # faster-whisper passes on an outdated option

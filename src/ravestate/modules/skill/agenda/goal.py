@@ -111,7 +111,8 @@ def goal(
         return entry.key == whole and entry.item.is_over
 
     def is_pursued(entry: Any) -> bool:
-        return entry.key == whole and entry.item.status == "pursued"
+        # Without `done`, the first try makes the goal a success; nothing else does.
+        return entry.key == whole and entry.item.status == ("done" if done is None else "pursued")
 
     def was_the_last_try(entry: Any) -> bool:
         return is_pursued(entry) and entry.item.tries >= tries

@@ -25,7 +25,8 @@ class Topic:
     """Answers to use if every phrase needs an unknown fact. If `otherwise` is empty too, other modules answer."""
     named: tuple[tuple[str, tuple[str, ...]], ...] = ()
     """Pairs of a fact and answers. The answers suit a question that names a value of the fact. In an answer, ``{it}``
-    stands for this value. If the value is a pair, ``{that}`` stands for its second text."""
+    stands for this value. If the value is a pair, ``{that}`` stands for its second text. If each of these answers needs
+    an unknown fact, `phrases` answer."""
     unnamed: tuple[str, ...] = ()
     """Answers to a question about something particular (*can you dance*) that is not a value of a fact."""
     remarks: tuple[str, ...] = ()

@@ -19,16 +19,21 @@ def telling(
     Args:
         topic: The topic.
         question: The question in lower case, without punctuation and short forms. If it names a value of a fact, the
-            answer is about this value.
+            answer is about this value. If all phrases about the value need unknown facts, the topic's phrases answer.
         facts: The agent's facts.
         mood: The agent's mood.
         now: The current time, for the agent's age, the date and the time of day.
     """
     values = _in_words(facts, mood, now)
+    names_a_value = False
     for fact, phrases in topic.named:
         for it, that in _pairs(facts.get(fact, ())):
             if _names(question, it):
-                return _filled(phrases, {**values, "it": it, "that": that})
+                if filled := _filled(phrases, {**values, "it": it, "that": that}):
+                    return filled
+                names_a_value = True
+    if names_a_value:  # `unnamed` and `otherwise` would deny the value
+        return _filled(topic.phrases, values) or None
     if _PARTICULAR.match(question) and (topic.unnamed or topic.named):
         return _filled(topic.unnamed, values) or None
     if topic.named and not topic.unnamed and _FAVOURITE.search(question):

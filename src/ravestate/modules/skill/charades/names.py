@@ -80,4 +80,4 @@ begun: rs.Signal[None] = module.signal("begun")
 """A game begins."""
 
 declined: rs.Signal[None] = module.signal("declined")
-"""The user does not want to play, or has not answered the offer for `patience` seconds."""
+"""The user does not want to play."""

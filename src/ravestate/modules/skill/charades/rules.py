@@ -96,12 +96,15 @@ offer = agenda.goal(
     emits=prompted,
     detached=True,
 )
-async def note_offer(ctx: rs.RuleContext) -> None:
+async def note_offer(ctx: rs.RuleContext) -> rs.Resign | None:
     """Wait for the answer, after the bored agent has offered a game."""
+    if ctx[game].is_on:
+        return rs.Resign("the user has prompted the offer")  # `propose` waits for the answer
     turn = ctx[game].turn + 1
     ctx[game] = Game("offered", turn=turn)
     ctx[agenda.topics].add(TOPIC, "a game of charades")
     ctx.emit(prompted, turn)
+    return None
 
 
 # ------------------------------------------------------------------------------- the user's moves
@@ -143,14 +146,21 @@ async def answer(ctx: rs.RuleContext) -> None:
 @module.rule(
     when=invited,
     reads=SURROUNDINGS,
-    writes=EFFECTS,
+    writes=(*EFFECTS, agenda.goals),
     emits=EMITTED,
     detached=True,
     weight=2.5,  # this rule outranks small talk about boredom
 )
 async def propose(ctx: rs.RuleContext) -> None:
-    """Offer charades to a user who wants to play, or is bored."""
-    carry_out(ctx, play(ctx[game], ctx.payload(invited), world_of(ctx)))
+    """Offer charades to a user who wants to play, or is bored.
+
+    This offer counts as a try of the goal. So if it lapses, the bored agent waits before it offers the game again.
+    """
+    before = ctx[game]
+    carry_out(ctx, play(before, ctx.payload(invited), world_of(ctx)))
+    state = ctx[agenda.goals].get(offer.name, agenda.GoalState())
+    if not before.is_on and not state.is_over:
+        ctx[agenda.goals].add(offer.name, agenda.GoalState("pursued", state.tries + 1, ctx.now))
 
 
 def carry_out(ctx: rs.RuleContext, out: Outcome) -> None:
@@ -171,7 +181,7 @@ def carry_out(ctx: rs.RuleContext, out: Outcome) -> None:
             ctx.emit(begun)
     elif TOPIC in ctx[agenda.topics]:
         ctx[agenda.topics].remove(TOPIC)
-        if before.step == "offered":
+        if out.say == "declined":  # an offer that lapses is no refusal
             ctx.emit(declined)
     if out.counts:
         ctx.emit(counted)

@@ -144,8 +144,10 @@ class Index:
     def title_of(self, name: str) -> str:
         """Return the title that equals `name`, or "". Ignore case, and *the* at the beginning."""
         bare = name.lower().removeprefix("the ")
-        query = "SELECT title FROM documents WHERE title COLLATE NOCASE IN (?, ?) LIMIT 1"
-        found = self._rows(query, bare, f"the {bare}")
+        same = "title COLLATE NOCASE"
+        if not bare.isascii():  # SQLite ignores the case of ASCII letters only
+            same = "title GLOB '*[^ -~]*' AND lower_case(title)"
+        found = self._rows(f"SELECT title FROM documents WHERE {same} IN (?, ?) LIMIT 1", bare, f"the {bare}")
         return found[0][0] if found else ""
 
     def frequencies(self, stems: Sequence[str]) -> dict[str, int]:
@@ -249,6 +251,7 @@ class Index:
                 f"genqa: the index {self.path} was written by a newer Ravestate (format {version}, this one knows "
                 f"{FORMAT}): update Ravestate, or {_OTHER}"
             )
+        self._base.create_function("lower_case", 1, str.lower, deterministic=True)
         self._base.execute("PRAGMA journal_mode = WAL")  # readers and a writer do not wait for each other
         self._base.execute("PRAGMA synchronous = NORMAL")
         if empty:
