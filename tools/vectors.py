@@ -18,7 +18,7 @@ import numpy as np
 
 from ravestate import modules
 from ravestate.cli.complete import COMPLETE
-from ravestate.language import matcher, moves, vectors
+from ravestate.language import matcher, vectors
 from ravestate.language.encoder import Encoder
 from ravestate.language.matcher import Match
 from ravestate.testing import simulate
@@ -72,22 +72,11 @@ def examples() -> list[str]:
         def ranked(self, sentences: Sequence[str], _: int | None) -> list[list[Match]]:
             return [[] for _ in sentences]
 
-    class LearntMoves:
-        """A stand-in for a classifier of moves, which only collects its examples."""
-
-        def __init__(self, pairs: Sequence[tuple[str, str, float]], *_: object) -> None:
-            for texts in moves.learnt_texts(pairs):
-                seen.update(dict.fromkeys(texts))
-
-        def move(self, *_: object) -> None:
-            return None
-
     parts = [getattr(modules, name) for name in COMPLETE]
     settings = {"wildtalk": {"backend": "listen"}}
     with (
         tempfile.TemporaryDirectory() as folder,
         patch.object(matcher, "_Learnt", Learnt),
-        patch.object(moves, "_Learnt", LearntMoves),
         patch.dict(os.environ, XDG_DATA_HOME=folder),
         simulate(*parts, settings=settings) as sim,
     ):

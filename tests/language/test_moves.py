@@ -4,21 +4,21 @@ from __future__ import annotations
 
 import pytest
 
-from ravestate.language.moves import Move, Moves, bundled_moves
+from ravestate.language import moves
+from ravestate.language.moves import Move
+from ravestate.language.network import Network, network
 from ravestate.language.normal import normalise
-from ravestate.language.sentences import sentences
 
 
 def move_of(text: str) -> Move:
-    said = sentences(normalise(text).text)
-    found = bundled_moves().move(said, asks="?" in " ".join(said))
+    found = moves.move_of(normalise(text).unguessed, asks="?" in text)
     assert found is not None
     return found
 
 
 @pytest.fixture(scope="module", autouse=True)
 def _loaded() -> None:
-    bundled_moves().load()
+    network().load()
 
 
 @pytest.mark.parametrize(
@@ -39,20 +39,21 @@ def test_a_statement_is_never_taken_for_a_question() -> None:
 
 
 def test_a_statement_scores_higher_than_a_question_with_the_same_words() -> None:
-    said = ("what a wonderful day we had",)
-    as_question, as_statement = (bundled_moves().move(said, asks=asks) for asks in (True, False))
+    said = "what a wonderful day we had"
+    as_question, as_statement = (moves.move_of(said, asks=asks) for asks in (True, False))
     assert as_question is not None
     assert as_statement is not None
     assert as_statement.score > as_question.score
 
 
-def test_moves_that_are_not_loaded_return_no_move() -> None:
-    assert Moves({"greet": ["hello"]}).move(("hello",), asks=False) is None
+def test_before_the_network_is_loaded_there_is_no_move(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(Network, "loaded", False)
+    assert moves.move_of("hello", asks=False) is None
 
 
 def test_a_text_without_words_has_no_move() -> None:
-    assert bundled_moves().move(("...",), asks=False) is None
-    assert bundled_moves().move((), asks=False) is None
+    assert moves.move_of("...", asks=False) is None
+    assert moves.move_of("", asks=False) is None
 
 
 def test_only_a_listening_move_with_a_high_score_counts_as_listening() -> None:

@@ -8,13 +8,8 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from ravestate.errors import PlatformError
-from ravestate.language.encoder import BUNDLED
-from ravestate.language.model import LAYERS, model_in
-from ravestate.language.tagger import Tag, Tagger
-from ravestate.modules.skill.persqa.tags import tagger
-
-FILE = Path(__file__).parents[2] / "src" / "ravestate" / "modules" / "skill" / "persqa" / "facts.onnx"
+from ravestate.language.network import Network
+from ravestate.language.tagger import Tag, Tagger, tagger
 
 
 @pytest.fixture(scope="module")
@@ -24,12 +19,12 @@ def loaded() -> Tagger:
     return found
 
 
-def found_in(tags: tuple[Tag, ...]) -> set[tuple[str, str, bool]]:
+def found_in(tags: list[Tag]) -> set[tuple[str, str, bool]]:
     return {(tag.label, tag.text, tag.negated) for tag in tags}
 
 
-def test_a_tagger_finds_nothing_before_it_is_loaded() -> None:
-    assert Tagger(FILE).tags("I live in Leeds.") == ()
+def test_a_tagger_finds_nothing_before_it_is_loaded(tmp_path: Path) -> None:
+    assert Tagger(Network(tmp_path / "missing.onnx")).tags("I live in Leeds.") == []
 
 
 def test_several_values_of_a_text_have_their_labels(loaded: Tagger) -> None:
@@ -62,16 +57,3 @@ def test_tags_lie_in_the_text_one_after_the_other(text: str) -> None:
         assert text[tag.start : tag.end] == tag.text
         assert 0 <= tag.score <= 1.001
         last = tag.end
-
-
-def test_a_broken_file_says_so(tmp_path: Path) -> None:
-    broken = tmp_path / "facts.onnx"
-    broken.write_bytes(b"nothing")
-    with pytest.raises(PlatformError, match="is broken"):
-        Tagger(broken).load()
-
-
-def test_the_bundled_model_also_returns_inner_layers() -> None:
-    spans, vectors = model_in(None, BUNDLED).token_vectors("Hello there")
-    assert [("Hello there"[start:end]) for start, end in spans] == ["", "Hello", "there", ""]
-    assert vectors.shape == (4, len(LAYERS[BUNDLED]) * 384)

@@ -6,6 +6,7 @@ understands text. A change may lose some of these sentences if the floors in `te
 
 from __future__ import annotations
 
+import re
 from collections.abc import Callable, Iterable
 from functools import cache
 
@@ -50,6 +51,20 @@ def quiet(text: str) -> str:
 def feelings(text: str) -> str:
     """Return the feelings that emotion finds in a text, including sadness."""
     return emotion.recognise(text, Settings().agent_names) or "-"
+
+
+_ANSWERING = re.compile(
+    r"^\W*(?:ok|okay|sure|right|alright|all right|fine|fair|true|same|not|never|can't|i (?:do|did|have|am|was|would))\b|"
+    r"\b(?:yes|yeah|yep|no|nope|nah|not|maybe|perhaps|probably|idk|don't know|i guess|okay|course)\b",
+    re.IGNORECASE,
+)
+"""Words of a text that may be an answer."""
+
+
+def ordinary_statements() -> list[str]:
+    """Return the statements of `responses_rows` that are no answers: at least four words, and none of `_ANSWERING`."""
+    texts = dict.fromkeys(text for text, _ in labelled("responses_rows"))
+    return [text for text in texts if len(text.split()) >= 4 and not _ANSWERING.search(text)]
 
 
 SEE: dict[str, Callable[[str], str]] = {

@@ -18,10 +18,9 @@ from collections.abc import Callable
 from quality import modules
 from quality.language import triples_of, typed
 from quality.measure import labelled
+from ravestate.language.network import network
 from ravestate.modules.meta.nlp import Settings
 from ravestate.modules.meta.nlp.analysis import Analysis, analyse
-from ravestate.modules.meta.nlp.answer import answers
-from ravestate.modules.meta.nlp.inquiry import kinds
 from ravestate.modules.meta.nlp.pipeline import pipeline
 from ravestate.modules.meta.nlp.reading import ModelReader, model_reader
 
@@ -45,8 +44,7 @@ def _sets() -> dict[str, tuple[list[tuple[str, object]], Labels]]:
 
 
 async def _compare(reader: ModelReader, most: int) -> None:
-    answers().load()
-    kinds().load()
+    network().load()
     print(f"{'set':<16}{'rows':>6}{'without':>10}{'with':>8}{'unused':>8}{'median s':>10}")
     for name, (rows, label) in _sets().items():
         chosen = random.Random(0).sample(rows, min(most, len(rows)))

@@ -13,13 +13,13 @@ from typing import ClassVar
 from quality.measure import Reply, Result, facts, measure_facts
 from ravestate.language.entity import Entity
 from ravestate.language.matcher import bundled_matcher
+from ravestate.language.network import network
 from ravestate.language.normal import Normal
 from ravestate.modules import genqa as genqa_module
 from ravestate.modules.meta.nlp import QuestionWord, Settings, YesNo
 from ravestate.modules.meta.nlp.analysis import MATCHERS, Analysis, analyse
-from ravestate.modules.meta.nlp.answer import answers
 from ravestate.modules.meta.nlp.clause import Clause
-from ravestate.modules.meta.nlp.inquiry import kinds, question_of
+from ravestate.modules.meta.nlp.inquiry import question_of
 from ravestate.modules.meta.nlp.pipeline import TOGETHER, Pipeline, pipeline
 from ravestate.modules.meta.nlp.statements import statements_of
 from ravestate.modules.meta.nlp.tree import Tree
@@ -31,7 +31,7 @@ FLAGS = ("negated", "past", "hearsay", "conditional", "plan", "question", "reque
 
 
 def analysed(text: str) -> Analysis:
-    return _analysed(text, (*(bundled_matcher(name).loaded for name in MATCHERS), answers().loaded, kinds().loaded))
+    return _analysed(text, (*(bundled_matcher(name).loaded for name in MATCHERS), network().loaded))
 
 
 @cache
@@ -87,7 +87,7 @@ def flags(text: str) -> str:
 
 def question(text: str) -> QuestionWord | None:
     """Return the kind of question that nlp finds; None if a text asks nothing."""
-    kinds().load()
+    network().load()
     return question_of(_Prepared().normalise(text, Settings().agent_names).unguessed)
 
 
@@ -99,7 +99,7 @@ def questions(text: str) -> str:
 
 def yesno(text: str) -> str:
     """Return the label of the meaning that a loaded nlp finds in an answer."""
-    answers().load()
+    network().load()
     return yesno_label(analysed(text).yesno)
 
 

@@ -14,9 +14,8 @@ from quality import measure, modules
 from quality.modules import analysed
 from ravestate.language.acts import heard, only
 from ravestate.language.matcher import bundled_matcher
-from ravestate.modules.meta.nlp import inquiry
+from ravestate.language.network import network
 from ravestate.modules.meta.nlp.analysis import MATCHERS
-from ravestate.modules.meta.nlp.answer import answers
 from ravestate.modules.skill.agentqa.life_file import read_life
 from ravestate.modules.skill.agentqa.remarks import act_in, remark_in
 from ravestate.modules.skill.agentqa.router import Match, router_of
@@ -86,8 +85,7 @@ def persqa_facts(sentence: str) -> str:
 def load() -> None:
     for name in MATCHERS:
         bundled_matcher(name).load()
-    answers().load()
-    inquiry.kinds().load()
+    network().load()
     kinds.load()
 
 

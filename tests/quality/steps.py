@@ -18,7 +18,7 @@ from quality.modules import analysed, prepare
 from quality.skills import listener, load
 from ravestate.language.addressing import addressed
 from ravestate.language.lexicon import load_lexicon
-from ravestate.language.moves import bundled_moves
+from ravestate.language.network import network
 from ravestate.language.nonsense import is_nonsense
 from ravestate.language.normal import normalise
 from ravestate.modules.meta.nlp.introduction import introductions_in
@@ -177,7 +177,7 @@ def result(name: str) -> measure.Result:
     """Measure the set `name`. If a step has several results, one of them must be the label."""
     load()
     charades.load()
-    bundled_moves().load()
+    network().load()
     cases = measure.labelled(name)
     labels = dict(cases)
     prepare(_parts(text)[1] for text, _ in cases)

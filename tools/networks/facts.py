@@ -1,30 +1,26 @@
-"""Train the tagger of facts on the marked sentences in ``facts``, and write ``persqa/facts.onnx``.
-
-python tools/networks/facts.py            train; about 15 minutes on 2 cores
-python tools/networks/facts.py --check    exit code 1 if the sentences have changed since the last training
-
-Training needs two packages that ravestate itself does not need: pip install torch onnx
-"""
+"""The head that marks the values of facts in a text: ``facts`` and ``denials``."""
 
 from __future__ import annotations
 
-import sys
 from collections.abc import Sequence
 from pathlib import Path
 from typing import Any
 
 from marks import Marked, Value, read
-from shared import SRC, WIDTH, Row, checked, digest, mixer, padded, run, trained, write
+from rows import LAYERS, WIDTH, Row
+from trunk import Read
 
-from ravestate.language.lexicon import load_lexicon
+from ravestate.language.network import SAID
 from ravestate.language.normal import normalise
 from ravestate.modules.skill.persqa.topics import TOPICS
 
-FILES = sorted((Path(__file__).parent / "facts").glob("*.txt"))
-OUT = SRC / "modules" / "skill" / "persqa" / "facts.onnx"
 LABELS = [*TOPICS, "favourite"]
-LAYERS, HIDDEN, DROPOUT = 5, 192, 0.3
-EPOCHS, BATCH, RATE = 12, 64, 3e-3
+HIDDEN, DROPOUT = 192, 0.3
+"""The size of an LSTM layer in each direction, and its dropout."""
+NOISE, LOST = 0.05, 0.05
+"""The standard deviation of the noise on the vectors, and the share of tokens that are left out."""
+SPREAD, DENIED = 0.05, 0.3
+"""Label smoothing, and the weight of the denials in the loss."""
 
 
 def row_of(sentence: Marked) -> Row:
@@ -34,9 +30,9 @@ def row_of(sentence: Marked) -> Row:
     others. `Row.denied` is 1 if the value is denied, 0 if it holds, -1 without a value.
     """
     normal = normalise(sentence.text)
-    row = Row(normal.text)
+    row = Row(normal.text, longest=96)
     row.classes, row.denied = [0] * len(row), [-1.0] * len(row)
-    row.context = LABELS.index(sentence.context) + 1 if sentence.context in LABELS else 0
+    row.asked = LABELS.index(sentence.context) + 1 if sentence.context in LABELS else 0
     for value in sentence.values:
         start, end = _moved(value, normal.origin, len(normal.text))
         first = True
@@ -54,59 +50,72 @@ def _moved(value: Value, origin: Sequence[int], length: int) -> tuple[int, int]:
     return (inside[0], inside[-1] + 1) if inside else (0, 0)
 
 
-def network(torch: Any) -> Any:
-    """Return a new network: two bidirectional LSTM layers, and two outputs per token."""
-    nn = torch.nn
+class Facts:
+    """The marked sentences."""
 
-    class Network(nn.Module):  # type: ignore[misc, name-defined]
-        def __init__(self) -> None:
-            super().__init__()
-            self.mixer = mixer(torch, LAYERS)
-            self.before, self.after = nn.LayerNorm(WIDTH), nn.LayerNorm(2 * HIDDEN)
-            self.context = nn.Embedding(len(LABELS) + 1, WIDTH)
-            nn.init.normal_(self.context.weight, 0, 0.1)
-            self.lstm = nn.LSTM(WIDTH, HIDDEN, 2, batch_first=True, bidirectional=True, dropout=DROPOUT)
-            self.drop = nn.Dropout(DROPOUT)
-            self.classes, self.denied = nn.Linear(2 * HIDDEN, 1 + 2 * len(LABELS)), nn.Linear(2 * HIDDEN, 1)
+    files: Sequence[Path] = sorted((Path(__file__).parent / "facts").glob("*.txt"))
 
-        def forward(self, vectors: Any, marks: Any, context: Any, lengths: Any = None) -> tuple[Any, Any]:
-            tokens = self.before(self.mixer(vectors, marks)) + self.context(context)[:, None]
-            tokens = self.drop(self.after(run(torch, self.lstm, self.drop(tokens), lengths)))
-            classes, denied = self.classes(tokens), self.denied(tokens)[..., 0]
-            return (classes.softmax(-1), denied.sigmoid()) if lengths is None else (classes, denied)
+    def __init__(self) -> None:
+        """Read the sentences."""
+        self.rows = [row_of(one) for one in read(self.files)]
+        self.labels = {"facts": LABELS}
 
-    return Network()
+    def head(self, torch: Any) -> Any:
+        """Return a new head: two bidirectional LSTM layers that read a weighted mean of the sentence model's layers.
 
+        It does not read the trunk, because the inner layers say more about single words. With the trunk alone, 88 % of
+        the sentences in ``marked_rows.txt`` get exactly the right marks; with the layers alone, or with both, 91 %.
+        """
+        nn = torch.nn
 
-def main(arguments: Sequence[str]) -> int:
-    """Train and write, or check; return the exit code."""
-    if "--check" in arguments:
-        return checked(OUT, FILES, "python tools/networks/facts.py")
-    import torch
+        class Head(nn.Module):  # type: ignore[misc, name-defined]
+            def __init__(self) -> None:
+                super().__init__()
+                self.weights = nn.Parameter(torch.zeros(LAYERS))
+                self.norms = nn.ModuleList([nn.LayerNorm(WIDTH) for _ in range(LAYERS)])
+                self.before, self.after = nn.LayerNorm(WIDTH), nn.LayerNorm(2 * HIDDEN)
+                self.mark, self.asked = nn.Embedding(1 + SAID, WIDTH), nn.Embedding(1 + len(LABELS), WIDTH)
+                for part in (self.mark, self.asked):
+                    nn.init.normal_(part.weight, 0, 0.1)
+                self.lstm = nn.LSTM(WIDTH, HIDDEN, 2, batch_first=True, bidirectional=True, dropout=DROPOUT)
+                self.drop = nn.Dropout(DROPOUT)
+                self.classes, self.denied = nn.Linear(2 * HIDDEN, 1 + 2 * len(LABELS)), nn.Linear(2 * HIDDEN, 1)
 
-    torch.manual_seed(0)
-    load_lexicon()
-    rows = [row_of(one) for one in read(FILES)]
-    print(f"{len(rows)} sentences", flush=True)
-    functions = torch.nn.functional
+            def read(self, read: Read, lengths: Any = None) -> tuple[Any, Any]:
+                """Return the logits of the classes and of the denials. Without `lengths`, there is no padding."""
+                vectors = read.vectors
+                if self.training:  # noise against overfitting
+                    kept = (torch.rand(vectors.shape[:2]) > LOST)[..., None]
+                    vectors = (vectors + torch.randn_like(vectors) * NOISE) * kept
+                shares, parts = self.weights.softmax(0), vectors.split(WIDTH, dim=2)
+                mixed = sum(shares[at] * self.norms[at](parts[at]) for at in range(LAYERS)) + self.mark(read.marks)
+                tokens = self.drop(self.before(mixed) + self.asked(read.asked)[:, None])
+                if lengths is None:
+                    tokens = self.lstm(tokens)[0]
+                else:
+                    tools = nn.utils.rnn
+                    packed = tools.pack_padded_sequence(tokens, lengths, batch_first=True, enforce_sorted=False)
+                    tokens = tools.pad_packed_sequence(self.lstm(packed)[0], batch_first=True)[0]
+                tokens = self.drop(self.after(tokens))
+                return self.classes(tokens), self.denied(tokens)[..., 0]
 
-    def loss_of(made: Any, batch: list[Row]) -> Any:
-        vectors, marks, lengths = padded(torch, batch)
-        longest = vectors.shape[1]
-        classes = torch.tensor([row.classes + [-100] * (longest - len(row)) for row in batch])
-        denied = torch.tensor([row.denied + [-1.0] * (longest - len(row)) for row in batch])
-        found, denials = made(vectors, marks, torch.tensor([row.context for row in batch]), lengths)
-        loss = functions.cross_entropy(found.flatten(0, 1), classes.flatten(), ignore_index=-100, label_smoothing=0.05)
-        valued = denied >= 0
-        if valued.any():
-            loss = loss + 0.3 * functions.binary_cross_entropy_with_logits(denials[valued], denied[valued])
-        return loss
+            def outputs(self, read: Read) -> dict[str, Any]:
+                classes, denied = self.read(read)
+                return {"facts": classes.softmax(-1), "denials": denied.sigmoid()}
 
-    made = trained(torch, network(torch), rows, loss_of, EPOCHS, BATCH, RATE)
-    about = {"labels": ";".join(LABELS), "sentences": digest(FILES)}
-    write(torch, made, OUT, LAYERS, ["chances", "denials"], about, context=True)
-    return 0
+            def loss(self, read: Read, batch: Sequence[Row]) -> Any:
+                """Return the cross-entropy of the classes and the denials of all tokens."""
+                found, denials = self.read(read, torch.tensor([len(row) for row in batch]))
+                longest = found.shape[1]
+                classes = torch.tensor([row.classes + [-100] * (longest - len(row)) for row in batch])
+                denied = torch.tensor([row.denied + [-1.0] * (longest - len(row)) for row in batch])
+                total = nn.functional.cross_entropy(
+                    found.flatten(0, 1), classes.flatten(), ignore_index=-100, label_smoothing=SPREAD
+                )
+                valued = denied >= 0
+                if valued.any():
+                    lost = nn.functional.binary_cross_entropy_with_logits(denials[valued], denied[valued])
+                    total = total + DENIED * lost
+                return total
 
-
-if __name__ == "__main__":
-    raise SystemExit(main(sys.argv[1:]))
+        return Head()

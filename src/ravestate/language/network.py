@@ -1,10 +1,16 @@
-"""Small networks on top of the bundled sentence model. ``tools/networks`` trains them."""
+"""The network that reads an utterance: one run, and an output for each purpose.
+
+The network (``reader.onnx``) continues the bundled sentence model: its own six layers read the vectors that the sentence
+model has after its sixth layer. Several small heads read the result. They find the meaning of an answer, the kind of a
+question, the next move of a listener, the values of facts, and the replies that suit. `Classifier`, `Tagger` and
+`Replies` are views of these heads. ``tools/networks`` has the training.
+"""
 
 from __future__ import annotations
 
 import os
 import threading
-from collections.abc import Collection, Mapping
+from collections.abc import Mapping
 from functools import lru_cache
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
@@ -20,35 +26,34 @@ from .model import model_in
 if TYPE_CHECKING:
     from numpy.typing import NDArray
 
-
+LONGEST = 300
+"""The maximum number of characters of an utterance that a head for whole texts reads."""
 BEFORE = 24
-"""The maximum number of tokens that a network reads of the user's previous utterance. The same maximum applies to
+"""The maximum number of tokens that the network reads of the user's previous utterance. The same maximum applies to
 the agent's answer to that utterance."""
 EARLIER, SAID = 2, 3
 """`EARLIER` marks the tokens of the user's previous utterance. `SAID` marks the tokens of the agent's answer to it."""
-LATEST = 16
-"""The number of texts whose vectors are kept, because several networks read one utterance."""
+LATEST = 64
+"""The number of texts whose outputs are kept, because several modules read one utterance. A text takes 12 kB."""
 
 
 class Network:
-    """A network that reads each token's vectors after several layers of the encoder. Thread-safe."""
+    """A network that reads each token's vectors after several layers of the sentence model. Thread-safe."""
 
     def __init__(self, file: Path) -> None:
         """Choose a file; load nothing yet.
 
         Args:
             file: An ONNX file. Its inputs are ``vectors`` (1, tokens, layers * 384), ``marks`` (1, tokens: 1 for a capital,
-                `EARLIER` or `SAID` for what came before) and perhaps ``context`` (1,). Its metadata has ``labels`` with
-                semicolons between them. In the metadata, ``before`` is 1 if the network reads the user's previous
-                utterance. ``said`` is 1 if the network reads the agent's answer to that utterance.
+                `EARLIER` or `SAID` for what came before) and ``asked`` (1,). Its metadata has the name of each head, and the
+                head's labels with semicolons between them.
         """
         self._file = file
         self._lock = threading.Lock()
         self._session: Any = None
-        self.labels: list[str] = []
-        self.about: Mapping[str, str] = {}
-        """The metadata of the file."""
-        self._marks: Collection[int] = ()
+        self._labels: dict[str, list[str]] = {}
+        self._outputs: list[str] = []
+        self._latest = lru_cache(LATEST)(self._read)
 
     @property
     def loaded(self) -> bool:
@@ -64,7 +69,7 @@ class Network:
         base = model_in(None, BUNDLED)
         if not base.layers:
             raise PlatformError(
-                f"the sentence model {BUNDLED} lacks the layers that the networks read: {requirement(SENTENCE_MODELS)}"
+                f"the sentence model {BUNDLED} lacks the layers that the network reads: {requirement(SENTENCE_MODELS)}"
             )
         with self._lock:
             if self._session is None:
@@ -85,41 +90,54 @@ class Network:
         options.log_severity_level = 4  # log no errors, because they are raised as exceptions
         try:
             session = runtime.InferenceSession(str(self._file), options, providers=["CPUExecutionProvider"])
-            about = session.get_modelmeta().custom_metadata_map
-            labels = about["labels"]
+            about: Mapping[str, str] = session.get_modelmeta().custom_metadata_map
+            self._labels = {head: labels.split(";") for head, labels in about.items()}
+            self._outputs = [one.name for one in session.get_outputs()]
         except Exception as error:  # the library has its own exceptions, with long messages
             raise PlatformError(f"the network {str(self._file)!r} is broken: install ravestate again") from error
-        self.labels, self.about = labels.split(";"), about
-        self._marks = [mark for name, mark in (("before", EARLIER), ("said", SAID)) if about.get(name) == "1"]
         return session
 
-    def run(
-        self, text: str, context: int | None = None, before: str = "", said: str = ""
-    ) -> tuple[list[tuple[int, int]], list[NDArray[Any]]]:
-        """Return the span of each token in a text, and the outputs of the network for the text.
+    def labels(self, head: str) -> list[str]:
+        """Return the labels of a head; none before `load`."""
+        return self._labels.get(head, [])
+
+    def read(self, text: str, before: str = "", said: str = "", asked: int = 0) -> Mapping[str, NDArray[Any]]:
+        """Return the outputs for a text by their names, each without its first axis; none before `load`.
 
         Args:
             text: One or more sentences in normal form.
-            context: The index of the label that the agent has just asked for, counted from 1; 0 for no label. Pass None if
-                the network has no such input.
-            before: The user's previous utterance. If the network reads it, its tokens come first, and the outputs have
-                more tokens than the spans.
-            said: The agent's answer to the previous utterance. Its tokens come between those of `before` and `text`.
+            before: The user's previous utterance in normal form; empty if there is none.
+            said: The agent's answer to the previous utterance; empty if there is none.
+            asked: The place of the fact that the agent has just asked for, in the labels of the head ``facts``, counted
+                from 1; 0 if it has asked for none.
         """
+        return self._latest(text, before, said, asked) if self.loaded and text.strip() else {}
+
+    def spans(self, text: str) -> list[tuple[int, int]]:
+        """Return the span of each token in a text."""
+        return _vectors(text)[0]
+
+    def _read(self, text: str, before: str, said: str, asked: int) -> Mapping[str, NDArray[Any]]:
         import numpy as np
 
         spans, vectors = _vectors(text)
         marks = [int(start < end and text[start].isupper()) for start, end in spans]
         for earlier, mark in ((said, SAID), (before, EARLIER)):
-            if earlier and mark in self._marks:
+            if earlier:
                 tokens = _vectors(earlier)[1][:BEFORE]
                 vectors, marks = np.concatenate([tokens, vectors]), [mark] * len(tokens) + marks
-        given = {"vectors": vectors[None], "marks": np.array([marks])}
-        if context is not None:
-            given["context"] = np.array([context])
-        return spans, self._session.run(None, given)
+        given = {"vectors": vectors[None], "marks": np.array([marks]), "asked": np.array([asked])}
+        return dict(zip(self._outputs, (one[0] for one in self._session.run(None, given)), strict=True))
 
 
 @lru_cache(LATEST)
 def _vectors(text: str) -> tuple[list[tuple[int, int]], NDArray[Any]]:
     return model_in(None, BUNDLED).token_vectors(text)
+
+
+_NETWORK = Network(Path(__file__).with_name("reader.onnx"))
+
+
+def network() -> Network:
+    """Return the bundled network, which all contexts share. It may not be loaded yet."""
+    return _NETWORK

@@ -1,35 +1,44 @@
 """Grade authored replies to an utterance, and find the kinds of reply that suit it.
 
-A network (``replies.onnx``) has learnt from the grades that readers gave to replies, and from utterances whose authors
-chose the kinds that suit. ``tools/networks`` has both. The listening skill of the module wildtalk says the replies.
-`nlp` asks for the kinds: a farewell calls for a reply of the kind ``leaves``.
+A head of the network has learnt from the grades that readers gave to replies, and from utterances whose authors chose the
+kinds that suit. ``tools/networks`` has both. The listening skill of the module wildtalk says the replies. `nlp` asks for
+the kinds: a farewell calls for a reply of the kind ``leaves``.
 """
 
 from __future__ import annotations
 
 from collections.abc import Mapping
 from functools import lru_cache
-from pathlib import Path
 
-from .network import Network
+from .network import LONGEST, Network, network
 
-LONGEST = 300
-"""The maximum number of characters that the network reads."""
 REMEMBERED = 8
-"""The number of texts whose grades are kept, because modules may ask for a text again. A text takes 200 kB."""
+"""The number of texts whose grades are kept as mappings. A text takes 200 kB."""
+HEAD, KINDS, LIKELY = "replies", "reply_kinds", "likely"
+"""The grades of the replies and their labels; the kind of each reply; the probability of each reply's kind."""
 
 
-class Replies(Network):
-    """The network that grades replies to a text. Thread-safe."""
+class Replies:
+    """The head of the network that grades replies to a text. Thread-safe."""
 
-    def __init__(self, file: Path) -> None:
-        """Choose a trained network; load nothing yet.
-
-        Args:
-            file: The ONNX file. Its metadata also has ``kinds``: the kind of each reply, with semicolons between them.
-        """
-        super().__init__(file)
+    def __init__(self, source: Network | None = None) -> None:
+        """Choose the network (by default, the bundled network); load nothing yet."""
+        self._network = source or network()
         self._latest = lru_cache(REMEMBERED)(self._graded)
+
+    @property
+    def loaded(self) -> bool:
+        """Whether the network is ready."""
+        return self._network.loaded
+
+    def load(self) -> None:
+        """Load the network, once. This raises the same errors as `Network.load`."""
+        self._network.load()
+
+    @property
+    def labels(self) -> list[str]:
+        """The replies; none before `load`."""
+        return self._network.labels(HEAD)
 
     def grades(self, text: str, before: str = "", said: str = "") -> Mapping[str, tuple[float, float]]:
         """Return for each reply its expected grade, 0 to 2, and the probability of its kind.
@@ -42,22 +51,23 @@ class Replies(Network):
             said: The agent's last answer; empty if there is none.
         """
         text, before, said = text[:LONGEST], before[:LONGEST], said[:LONGEST]  # long texts would fill the cache
-        return self._latest(text, before, said) if self.loaded and text.strip() else {}
+        return self._latest(text, before, said) if self.loaded else {}
 
     def kinds(self, text: str, before: str = "", said: str = "") -> Mapping[str, float]:
         """Return the probability of each kind of reply. For the arguments, see `grades`."""
-        grades = self.grades(text, before, said)
-        likely = (chance for _, chance in grades.values())
-        return dict(zip(self.about["kinds"].split(";"), likely, strict=True)) if grades else {}
+        likely = (chance for _, chance in self.grades(text, before, said).values())
+        return dict(zip(self._network.labels(KINDS), likely, strict=False))
 
     def _graded(self, text: str, before: str, said: str) -> Mapping[str, tuple[float, float]]:
-        _, found = self.run(text, before=before, said=said)
-        return dict(zip(self.labels, zip(*(one[0].tolist() for one in found), strict=True), strict=True))
+        outputs = self._network.read(text, before=before, said=said)
+        if not outputs:
+            return {}
+        return dict(zip(self.labels, zip(outputs[HEAD].tolist(), outputs[LIKELY].tolist(), strict=True), strict=True))
 
 
-_REPLIES = Replies(Path(__file__).with_name("replies.onnx"))
+_REPLIES = Replies()
 
 
 def replies() -> Replies:
-    """Return the network, which all contexts share. It may not be loaded yet."""
+    """Return the grades of the bundled network, which all contexts share. It may not be loaded yet."""
     return _REPLIES

@@ -2,13 +2,13 @@
 
 import pytest
 
-from ravestate.modules.meta.nlp.inquiry import kinds
+from ravestate.language.network import network
 from ravestate.modules.meta.nlp.pipeline import Pipeline, pipeline
 
 
 @pytest.fixture(scope="session", autouse=True)
 def _networks() -> None:
-    kinds().load()
+    network().load()
 
 
 @pytest.fixture(scope="session")

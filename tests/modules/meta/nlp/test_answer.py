@@ -1,14 +1,11 @@
 """Properties that hold for the meaning of any answer. `tests/quality` measures how often the meaning is right."""
 
-from pathlib import Path
-
 import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
 from quality.measure import labelled
-from ravestate.language.classifier import Classifier
-from ravestate.modules.meta.nlp import answer
+from ravestate.language.network import Network, network
 from ravestate.modules.meta.nlp.analysis import analyse
 from ravestate.modules.meta.nlp.answer import YesNo, yesno_of
 from ravestate.modules.meta.nlp.pipeline import pipeline
@@ -58,21 +55,20 @@ def test_a_very_long_answer_has_the_meaning_of_a_short_one() -> None:
     ("text", "meaning"), [("yes", YesNo(2, 0, False)), ("no, thanks", YesNo(0, 2, False)), ("maybe", YesNo(0, 0, True))]
 )
 def test_common_answers_need_no_sentence_model(text: str, meaning: YesNo, monkeypatch: pytest.MonkeyPatch) -> None:
-    unloaded = Classifier(Path("missing.onnx"))
-    monkeypatch.setattr(answer, "answers", lambda: unloaded)
+    monkeypatch.setattr(Network, "loaded", False)
     assert yesno_of(text) == meaning
     assert not yesno_of("you bet your boots")
 
 
 def test_all_parts_of_an_answer_decide_its_meaning() -> None:
-    answer.answers().load()
+    network().load()
     assert yesno_of("yes, and you?") == yesno_of("yes")
     assert yesno_of("not really, no").no
     assert yesno_of("yes, but not now").no and yesno_of("no, I guess").no == 1
 
 
 def test_a_letter_is_no_answer_unless_it_stands_for_one() -> None:
-    answer.answers().load()
+    network().load()
     assert not any(yesno_of(text) for text in ("A.", "b", "o", "?", ""))
     assert not analyse("a" * 300, pipeline("")).yesno
     assert yesno_of("Yes.").yes

@@ -2,15 +2,12 @@
 
 from __future__ import annotations
 
-import sys
-from pathlib import Path
-
 import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from ravestate.language.classifier import Classifier
-from ravestate.modules.meta.nlp import QuestionWord, inquiry
+from ravestate.language.network import Network, network
+from ravestate.modules.meta.nlp import QuestionWord
 from ravestate.modules.meta.nlp.analysis import analyse
 from ravestate.modules.meta.nlp.inquiry import question_of
 from ravestate.modules.meta.nlp.pipeline import pipeline
@@ -27,9 +24,7 @@ ASKED = [
 def test_common_questions_need_no_sentence_model(
     text: str, kind: QuestionWord, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    unloaded = Classifier(Path("missing.onnx"))
-    for module in (inquiry, sys.modules[analyse.__module__]):  # `nlp.analysis` is a slot
-        monkeypatch.setattr(module, "kinds", lambda: unloaded)
+    monkeypatch.setattr(Network, "loaded", False)
     assert question_of(text) is kind
     assert question_of("The lift has stopped.") is None
     assert question_of("The lift has stopped?") is QuestionWord.YES_NO
@@ -66,4 +61,4 @@ def test_the_question_at_the_end_of_a_long_text_is_found() -> None:
 
 
 def test_the_network_knows_the_kinds_of_questions() -> None:
-    assert set(inquiry.kinds().labels) == {*(kind.name for kind in QuestionWord), "-"}
+    assert set(network().labels("kinds")) == {*(kind.name for kind in QuestionWord), "-"}

@@ -9,7 +9,7 @@ import pytest
 
 from modules.modality.visionio.photographs import eye
 from ravestate.language.matcher import bundled_matcher
-from ravestate.modules.meta.nlp import inquiry
+from ravestate.language.network import network
 from ravestate.modules.meta.nlp.analysis import MATCHERS
 from ravestate.modules.meta.nlp.pipeline import pipeline
 from ravestate.modules.skill.persqa import kinds
@@ -28,7 +28,7 @@ def reader() -> None:
     """Load the language models once for all tests."""
     pipeline("").load()
     kinds.load()
-    inquiry.kinds().load()
+    network().load()
     for name in MATCHERS:
         bundled_matcher(name).load()
 

@@ -5,9 +5,8 @@ from __future__ import annotations
 import pytest
 
 from ravestate.language.matcher import bundled_matcher
+from ravestate.language.network import network
 from ravestate.modules.meta.nlp.analysis import MATCHERS
-from ravestate.modules.meta.nlp.answer import answers
-from ravestate.modules.meta.nlp.inquiry import kinds
 from ravestate.modules.meta.nlp.pipeline import pipeline
 from ravestate.modules.skill.charades import understanding
 
@@ -17,7 +16,6 @@ def reader() -> None:
     """Load the pipeline and the examples."""
     pipeline("").load()
     understanding.load()
-    answers().load()
-    kinds().load()
+    network().load()
     for name in MATCHERS:
         bundled_matcher(name).load()

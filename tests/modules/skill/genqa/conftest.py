@@ -6,14 +6,14 @@ from pathlib import Path
 
 import pytest
 
-from ravestate.modules.meta.nlp.inquiry import kinds
+from ravestate.language.network import network
 from ravestate.modules.skill.genqa.answering import Answerer
 from ravestate.modules.skill.genqa.index import Index
 
 
 @pytest.fixture(scope="session", autouse=True)
 def _networks() -> None:
-    kinds().load()
+    network().load()
 
 
 @pytest.fixture(scope="session")

@@ -9,8 +9,8 @@ from typing import Any
 import pytest
 
 from ravestate.language.matcher import bundled_matcher
+from ravestate.language.network import network
 from ravestate.modules import ontology
-from ravestate.modules.meta.nlp import inquiry
 from ravestate.modules.meta.nlp.analysis import MATCHERS
 from ravestate.modules.meta.nlp.pipeline import pipeline
 from ravestate.modules.meta.ontology.opening import open_memory
@@ -24,7 +24,7 @@ def reader() -> None:
     """Load the pipeline and the examples, once for all tests."""
     pipeline("").load()
     kinds.load()
-    inquiry.kinds().load()
+    network().load()
     for name in MATCHERS:
         bundled_matcher(name).load()
 

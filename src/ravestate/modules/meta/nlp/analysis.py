@@ -13,16 +13,16 @@ from ravestate.language.contractions import word_set
 from ravestate.language.entity import Entity
 from ravestate.language.feelings import clauses, feelings
 from ravestate.language.matcher import Match, Matcher, bundled_matcher
-from ravestate.language.moves import Move, bundled_moves, compared
+from ravestate.language.moves import Move, move_of
+from ravestate.language.network import network
 from ravestate.language.normal import Normal
-from ravestate.language.replies import replies
 from ravestate.language.sentences import sentences as sentences_of
 
-from .answer import YesNo, answers, yesno_of
+from .answer import YesNo, yesno_of
 from .clause import Clause
 from .closing import Closing, closing_of
 from .contrast import Contrast, contrasts_of
-from .inquiry import kinds, question_of
+from .inquiry import question_of
 from .introduction import Introduction, introductions_in
 from .pipeline import Pipeline
 from .question_word import QuestionWord
@@ -138,10 +138,7 @@ def load_models() -> None:
     """
     for name in MATCHERS:
         bundled_matcher(name).load()
-    answers().load()
-    kinds().load()
-    bundled_moves().load()
-    replies().load()
+    network().load()
 
 
 def analyse(
@@ -177,15 +174,15 @@ def analyse(
     parsed = Clause.all_in(tree)
     statements = statements_of(tree, entities, parsed)
     # One run of the encoder serves all matchers.
-    bundled_matcher("acts").prepare([*sentences, *clauses(sentences, names), *compared(sentences)])
+    bundled_matcher("acts").prepare([*sentences, *clauses(sentences, names)])
     if reading is not None and written is not None:
         question, yesno = reading.question_word, reading.yesno
     else:
         # Until the network is loaded, a question mark that `normal` has added is the best evidence of a question.
-        question = question_of(normal.unguessed if kinds().loaded else normal.text)
+        question = question_of(normal.unguessed if network().loaded else normal.text)
         yesno = yesno_of(normal.unguessed)
     closing = closing_of(tree, sentences)
-    meant = [closing.text] if closing is not None and closing.remarks else sentences
+    meant = closing.text if closing is not None and closing.remarks else normal.unguessed
     return Analysis(
         text=text,
         normal=normal,
@@ -202,7 +199,7 @@ def analyse(
         acts=acts(sentences),
         feelings=feelings(sentences, names),
         asks=_by_name(bundled_matcher("asks").match_all(sentences)),
-        move=bundled_moves().move(meant, asks=question is not None or "?" in text),
+        move=move_of(meant, asks=question is not None or "?" in text),
         questions=tuple(analyse(one, pipeline, names, users) for one in questions_in(tree)),
         intents=_by_name(designed.match_all(sentences or (text,)), ":") if designed else {},
     )

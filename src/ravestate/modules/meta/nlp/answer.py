@@ -1,17 +1,16 @@
 """Recognise answers: yes, no, or unsure.
 
-A small network (``answers.onnx``, trained in ``tools/networks``) reads the first `LONGEST` characters of a text. The
-answers in `PLAIN` always count. Until the network is loaded, or without the sentence model, only these answers and
-openings such as *no, ...* count.
+The network (`language.network`) reads the first `LONGEST` characters of a text. The answers in `PLAIN` always count.
+Until the network is loaded, or without the sentence model, only these answers and openings such as *no, ...* count.
 """
 
 from __future__ import annotations
 
 import re
 from dataclasses import dataclass
-from pathlib import Path
 
 from ravestate.language.classifier import Classifier
+from ravestate.language.network import LONGEST
 from ravestate.language.normal import plain
 
 
@@ -52,8 +51,6 @@ _FILLER = re.compile(r"^\W*(?:(?:well|oh|ah|uh|um|er|hm+|so)\b[\s,.!…]*)+(?=\w
 _RETURNED = re.compile(r"[\s,.!;]+(?:and|what about|how about) (?:you|yours|yourself)\W*$", re.IGNORECASE)
 """A question back, after an answer: *yes, and you?*."""
 _REPEATED = re.compile(r"\b(\w+)(?:[\s,]+\1\b)+", re.IGNORECASE)
-LONGEST = 300
-"""The maximum number of characters that are read, because answers are short."""
 _YES = (
     "yes|yeah|yep|yup|yea|aye|sure|ok|okay|of course|certainly|absolutely|definitely|please do|do it|do that|go ahead|i am sure|"
     "i'm sure|you may|you can|i agree|(?:delete|erase|remove) (?:me|it|that|everything|it all|all of it|all)|"
@@ -66,7 +63,7 @@ _LETTER = re.compile(r"[\W_]*[^ynk\W\d_]?[\W_]*", re.IGNORECASE)
 """A text without letters and digits, or with a single letter that is no answer (*y*, *n* and *k* are answers). The
 network has not learnt such texts."""
 _EMOJI = re.compile(r"\W*([👍👎])")
-_NETWORK = Classifier(Path(__file__).with_name("answers.onnx"))
+_ANSWERS = Classifier("answers")
 
 
 def yesno_of(text: str) -> YesNo:
@@ -82,7 +79,7 @@ def yesno_of(text: str) -> YesNo:
         return YesNo()
     text = _FILLER.sub("", text)
     text = _REPEATED.sub(r"\1", _RETURNED.sub(".", text[:LONGEST]))
-    name = _PLAIN.get(plain(text)) or answers().best(text)[0]
+    name = _PLAIN.get(plain(text)) or _ANSWERS.best(text)[0]
     if name in ("", "-") and (opening := _OPENING.match(text)):
         name = _PLAIN[opening[1].lower()]
     meaning, _, strength = name.partition(" ")
@@ -102,8 +99,3 @@ def is_only_yes(text: str) -> bool:
 def begins_with_yes(text: str) -> bool:
     """Return whether a text begins with a clear *yes*, and has no word of refusal, such as *not* or *wait*."""
     return _BEGINS.match(text) is not None and _REFUSES.search(text) is None
-
-
-def answers() -> Classifier:
-    """Return the classifier of answers, which all contexts share. It may not be loaded yet."""
-    return _NETWORK

@@ -1,15 +1,15 @@
 """Recognise questions and their kinds.
 
-A small network (``kinds.onnx``, trained in ``tools/networks``) reads each sentence. Until the network is loaded, or
+The network (`language.network`) reads each sentence. Until the network is loaded, or
 without the sentence model, the first words and the question mark of a sentence decide.
 """
 
 from __future__ import annotations
 
 import re
-from pathlib import Path
 
-from ravestate.language.classifier import LONGEST, Classifier
+from ravestate.language.classifier import Classifier
+from ravestate.language.network import LONGEST
 from ravestate.language.sentences import sentences
 
 from .question_word import MEASURES, QUESTION_WORDS, QuestionWord
@@ -18,7 +18,7 @@ _OPENING = re.compile(r"\W*(?:(?:and|but|so|well|oh|ok|okay|hi|hello|hey)\W+)*(\
 """The first two words of a sentence, without words such as *and*."""
 _MOST = 12
 """The maximum number of sentences that are read: half of them from the beginning, and half from the end."""
-_NETWORK = Classifier(Path(__file__).with_name("kinds.onnx"))
+_KINDS = Classifier("kinds")
 
 
 def question_of(text: str) -> QuestionWord | None:
@@ -38,7 +38,7 @@ def question_of(text: str) -> QuestionWord | None:
 
 
 def _kind(sentence: str) -> QuestionWord | None:
-    name = kinds().best(sentence)[0] or _plain_kind(sentence)
+    name = _KINDS.best(sentence)[0] or _plain_kind(sentence)
     if name == "-":
         return QuestionWord.YES_NO if "?" in sentence else None
     return QuestionWord[name]
@@ -52,8 +52,3 @@ def _plain_kind(sentence: str) -> str:
     if kind is QuestionWord.FORM and second.lower() in MEASURES:
         kind = QuestionWord.AMOUNT
     return "-" if kind is None else kind.name
-
-
-def kinds() -> Classifier:
-    """Return the classifier of questions, which all contexts share. It may not be loaded yet."""
-    return _NETWORK

@@ -12,10 +12,11 @@ from functools import lru_cache
 
 from ravestate.language.entity import Entity
 from ravestate.language.moves import LISTENING
+from ravestate.language.network import network
 from ravestate.modules._text import printable
 from ravestate.modules.meta.nlp import QuestionWord
 from ravestate.modules.meta.nlp.analysis import Analysis
-from ravestate.modules.meta.nlp.inquiry import kinds, question_of
+from ravestate.modules.meta.nlp.inquiry import question_of
 from ravestate.modules.meta.nlp.pipeline import pipeline
 from ravestate.modules.meta.nlp.questions import FINITE, WH, asking, is_finite, sentences_in
 from ravestate.modules.meta.nlp.tree import Tree, Word
@@ -91,7 +92,7 @@ class Parse:
 
 def parse(text: str) -> Parse:
     """Parse a text with the pipeline of nlp. Recent parses are kept, because the same text often comes again."""
-    return _parse(text, kinds().loaded)
+    return _parse(text, network().loaded)
 
 
 @lru_cache(maxsize=REMEMBERED)

@@ -7,8 +7,7 @@ from importlib.resources import files
 
 from ravestate.language.examples import read_examples
 from ravestate.language.matcher import Matcher
-
-from .tags import tagger
+from ravestate.language.tagger import tagger
 
 FITTING = {
     "name": ("person",),

@@ -12,13 +12,12 @@ import itertools
 import re
 from functools import cached_property
 
-from ravestate.language.tagger import Tag
+from ravestate.language.tagger import Tag, tagger
 from ravestate.modules import nlp
 from ravestate.modules.meta.nlp.phrase import Phrase
 from ravestate.modules.meta.nlp.tree import Tree, Word
 
 from .plain import plain_tags
-from .tags import tagger
 from .topics import ASKS, ENDS, LASTING, NAME, NATIONS, NOUNS, NOW, TOPICS, WORDS, Fact, favourite
 from .values import value_of
 from .wording import Facts, alike, among, without

@@ -8,9 +8,8 @@ from collections.abc import Callable
 import pytest
 
 from ravestate.language.matcher import bundled_matcher
-from ravestate.language.moves import bundled_moves
+from ravestate.language.network import network
 from ravestate.modules.meta.nlp.analysis import Analysis, analyse
-from ravestate.modules.meta.nlp.inquiry import kinds
 from ravestate.modules.meta.nlp.pipeline import pipeline
 from ravestate.modules.skill.wildtalk.listening import Heard, Listener, State
 from ravestate.modules.skill.wildtalk.listening.phrases import Line, Phrases
@@ -40,8 +39,7 @@ def seen(text: str) -> Analysis:
 def _models() -> None:
     for name in ("acts", "feelings", "asks"):
         bundled_matcher(name).load()
-    bundled_moves().load()
-    kinds().load()
+    network().load()
     Listener().load()
 
 

@@ -119,7 +119,6 @@ def _understand(found: Hearing, phrases: Material, heard: Heard, seen: Analysis,
     found.asked = asked_in(phrases, seen, asking, state, likely(seen), request=request)
     last = state.said[-1] if state.said else ""
     found.values = dict(found.asked.values) if found.asked else {}
-    last = state.said[-1] if state.said else ""
     found.tone, found.lasts = heard_tone(seen)
     joy = seen.move is not None and seen.move.name == "rejoice" and seen.move.score >= SETTLED
     if found.tone == "funny" or (state.tone == "sad" and found.tone == "glad" and not joy):

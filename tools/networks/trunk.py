@@ -1,13 +1,15 @@
-"""The upper layers of the bundled sentence model, as a network that a training may change."""
+"""The part of the network that all heads share: upper layers of the sentence model, which the training may change."""
 
 from __future__ import annotations
 
+from dataclasses import dataclass
 from typing import Any
 
-from shared import WIDTH
+from rows import WIDTH
 
 from ravestate.language.encoder import BUNDLED
 from ravestate.language.model import folder_of
+from ravestate.language.network import EARLIER, SAID
 
 HEADS, ALL = 12, 12
 """The number of heads of a layer, and of layers of the sentence model."""
@@ -19,12 +21,29 @@ PIECES = {
 """A part of a layer here, and its name in the model."""
 
 
-def upper_layers(torch: Any, first: int, dropout: float = 0.1) -> Any:
-    """Return the layers of the sentence model from number `first` on, of twelve, with their weights.
+FIRST, PLACE = 6, 1
+"""The index of the first layer that the network has for itself. It reads the vectors of the layer before, which is number
+PLACE of those that the sentence model returns."""
+DROPOUT, HEAD_DROPOUT = 0.1, 0.2
+"""The dropout within the layers, and the dropout before a head."""
 
-    The network reads the vectors after layer ``first - 1``, shape (n, tokens, WIDTH), and the padding, shape (n, tokens).
-    It returns the vectors after the last layer. `padding` is True for tokens that do not exist; None: there are none.
-    """
+
+@dataclass
+class Read:
+    """What the trunk has made of some texts: the input of a head."""
+
+    tokens: Any
+    """The vectors of the tokens: shape (n, tokens, WIDTH)."""
+    inside: Any
+    """Whether a token belongs to the text itself, not to the texts before it: shape (n, tokens)."""
+    vectors: Any
+    """The vectors that the trunk has read: shape (n, tokens, layers * WIDTH)."""
+    marks: Any
+    asked: Any
+
+
+def trunk(torch: Any) -> Any:
+    """Return a new trunk. It reads vectors, marks, the fact that was asked for, and padding, and returns a `Read`."""
     nn, weights = torch.nn, _weights(torch)
 
     class Layer(nn.Module):  # type: ignore[misc, name-defined]
@@ -36,7 +55,7 @@ def upper_layers(torch: Any, first: int, dropout: float = 0.1) -> Any:
                 part = nn.LayerNorm(WIDTH, eps=1e-12) if normed else nn.Linear(*reversed(weight.shape))
                 part.weight.data, part.bias.data = weight, weights[f"encoder.layer.{number}.{place}.bias"]
                 setattr(self, name, part)
-            self.drop = nn.Dropout(dropout)
+            self.drop = nn.Dropout(DROPOUT)
 
         def forward(self, tokens: Any, bias: Any) -> Any:
             shape = *tokens.shape[:2], HEADS, WIDTH // HEADS
@@ -48,18 +67,43 @@ def upper_layers(torch: Any, first: int, dropout: float = 0.1) -> Any:
             tokens = self.joined_norm(tokens + self.drop(self.joined(joined)))
             return self.norm(tokens + self.drop(self.narrow(nn.functional.gelu(self.wide(tokens)))))
 
-    class Upper(nn.Module):  # type: ignore[misc, name-defined]
+    class Trunk(nn.Module):  # type: ignore[misc, name-defined]
         def __init__(self) -> None:
             super().__init__()
-            self.layers = nn.ModuleList([Layer(number) for number in range(first, ALL)])
+            self.layers = nn.ModuleList([Layer(number) for number in range(FIRST, ALL)])
+            self.mark = nn.Embedding(1 + SAID, WIDTH)
+            nn.init.normal_(self.mark.weight, 0, 0.02)
 
-        def forward(self, tokens: Any, padding: Any = None) -> Any:
+        def forward(self, vectors: Any, marks: Any, asked: Any, padding: Any = None) -> Read:
+            tokens = vectors[..., PLACE * WIDTH : (PLACE + 1) * WIDTH] + self.mark(marks)
             bias = 0.0 if padding is None else (padding * -1e4)[:, None, None, :]
-            for layer in self.layers:
-                tokens = layer(tokens, bias)
-            return tokens
+            with torch.autocast("cpu", torch.bfloat16, enabled=self.training):
+                for layer in self.layers:
+                    tokens = layer(tokens, bias)
+            inside = marks < EARLIER
+            return Read(tokens.float(), inside if padding is None else inside & ~padding, vectors, marks, asked)
 
-    return Upper()
+    return Trunk()
+
+
+def pool(torch: Any) -> Any:
+    """Return a new network that makes one vector of a text, of 3 * WIDTH numbers: the vector of its first token, a
+    weighted mean of all, and the mean."""
+    nn = torch.nn
+
+    class Pool(nn.Module):  # type: ignore[misc, name-defined]
+        def __init__(self) -> None:
+            super().__init__()
+            self.weight, self.drop = nn.Linear(WIDTH, 1), nn.Dropout(HEAD_DROPOUT)
+
+        def forward(self, read: Read) -> Any:
+            inside = read.inside.float()
+            first = read.tokens[torch.arange(len(inside)), inside.argmax(1)]
+            weights = self.weight(read.tokens)[..., 0].masked_fill(~read.inside, -1e9).softmax(1)
+            mean = (read.tokens * inside[..., None]).sum(1) / inside.sum(1, keepdim=True)
+            return self.drop(torch.cat([first, (read.tokens * weights[..., None]).sum(1), mean], 1))
+
+    return Pool()
 
 
 def _weights(torch: Any) -> dict[str, Any]:
