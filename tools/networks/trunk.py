@@ -30,7 +30,7 @@ DROPOUT, HEAD_DROPOUT = 0.1, 0.2
 
 @dataclass
 class Read:
-    """What the trunk has made of some texts: the input of a head."""
+    """The output of the trunk for some texts: the input of a head."""
 
     tokens: Any
     """The vectors of the tokens: shape (n, tokens, WIDTH)."""

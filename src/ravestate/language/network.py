@@ -2,8 +2,8 @@
 
 The network (``reader.onnx``) continues the bundled sentence model: its own six layers read the vectors that the sentence
 model has after its sixth layer. Several small heads read the result. They find the meaning of an answer, the kind of a
-question, the next move of a listener, the values of facts, and the replies that suit. `Classifier`, `Tagger` and
-`Replies` are views of these heads. ``tools/networks`` has the training.
+question, and the next move of a listener. Others find the values of facts, and the replies that suit. `Classifier`,
+`Tagger` and `Replies` are views of these heads. ``tools/networks`` has the training.
 """
 
 from __future__ import annotations
