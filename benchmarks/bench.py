@@ -18,6 +18,7 @@ class Bench(contextlib.ExitStack):
     """The contestants of one question. Leaving the ``with`` block ends the contestants' processes.
 
     Args:
+        question: The name of the question.
         quick: Whether to repeat less often.
     """
 

@@ -1,7 +1,11 @@
 """The sentences that helped to develop the detection of the end of a turn. The measurement uses other sentences.
 
-`voice.ends_of_turns(model, 40, OPEN, COMPLETE)` measures them.
+`python -m benchmarks.peers.development [MODEL]` measures them.
 """
+
+from __future__ import annotations
+
+import sys
 
 COMPLETE = (
     "Where is the nearest post office?", "I have never been so happy.", "Our neighbours have three children.",
@@ -40,3 +44,15 @@ OPEN = (
     ("There is something I have to", "tell you."),
 )  # fmt: skip
 """Beginnings of sentences, each with its continuation after a pause."""
+
+
+def main(model: str = "tiny.en") -> None:
+    """Print the shares of false cuts and of missed ends in these sentences."""
+    from benchmarks.questions.voice import ends_of_turns
+
+    cuts, missed, count = ends_of_turns(model, len(COMPLETE), OPEN, COMPLETE)
+    print(f"{model}: {cuts:.1%} false cuts of {count} pauses, {missed:.1%} missed ends of {count} sentences")
+
+
+if __name__ == "__main__":
+    main(*sys.argv[1:])

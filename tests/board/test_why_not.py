@@ -538,6 +538,37 @@ def test_why_not_says_that_a_spike_was_withdrawn(stage: Stage) -> None:
     assert found.words == "demo:input:changed was withdrawn at 0.000 s: it was wiped"
 
 
+@pytest.mark.parametrize(
+    ("retires", "words"),
+    [
+        (False, "it ran at 0.000 s and was stopped because its spike was wiped"),
+        (True, "it ran at 0.000 s, was stopped because its spike was wiped and retired: it cannot go on"),
+    ],
+)
+def test_why_not_says_that_a_run_was_stopped_because_its_spike_was_wiped(
+    stage: Stage, retires: bool, words: str
+) -> None:
+    @stage.module.rule(when=stage.touch, writes=stage.output)
+    async def slow(ctx: rs.RuleContext) -> rs.Retire | None:
+        try:
+            await ctx.sleep(5)
+        except asyncio.CancelledError:
+            if retires:
+                return rs.Retire("it cannot go on")
+            raise
+        return None
+
+    with stage.run() as sim:
+        sim.emit(stage.touch)
+        sim.advance(1)
+        sim.wipe(stage.touch)
+        sim.advance(1)
+        found = ask(sim, "slow", "demo:touch")
+    assert (found.verdict, found.at) == ("withdrawn", 1.0)
+    assert found.words == words
+    assert found.missing == ()
+
+
 def test_why_not_names_the_rule_that_had_taken_the_slot(stage: Stage) -> None:
     @stage.module.rule(when=stage.input.changed, writes=stage.output, weight=2)
     async def long(ctx: rs.RuleContext) -> None:

@@ -75,3 +75,20 @@ def test_the_picture_of_a_comparison_has_a_bar_for_each_compared_library(monkeyp
         "floor", "Ravestate", "other", "one", "slow & steady",
     ]  # fmt: skip  # the shortest time first
     assert "400 ms" in words and "alone" not in words
+
+
+def test_the_sentences_for_development_can_be_measured(
+    monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+) -> None:
+    monkeypatch.syspath_prepend(str(ROOT))
+    development, voice = import_module("benchmarks.peers.development"), import_module("benchmarks.questions.voice")
+    asked: list[object] = []
+
+    def ends_of_turns(*arguments: object) -> tuple[float, float, int]:
+        asked.extend(arguments)
+        return 0.025, 0.1, 40
+
+    monkeypatch.setattr(voice, "ends_of_turns", ends_of_turns)
+    development.main("base")
+    assert asked == ["base", 40, development.OPEN, development.COMPLETE]
+    assert capsys.readouterr().out == "base: 2.5% false cuts of 40 pauses, 10.0% missed ends of 40 sentences\n"

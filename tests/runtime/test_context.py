@@ -17,6 +17,7 @@ from ravestate.runtime.async_rules import GRACE
 from ravestate.runtime.runner import SETTLES
 from ravestate.runtime.workers import SHARE
 from ravestate.testing import simulate
+from ravestate.testing.virtual_loop import VirtualLoop
 from runtime.on_loop import on_loop, turns
 
 
@@ -627,6 +628,33 @@ def test_shutdown_does_not_wait_for_a_background_loop() -> None:
     with simulate(ending.module) as sim:
         sim.advance(1)
     assert ending.told == ["farewell", "1.35 s"]
+
+
+@pytest.mark.parametrize("when", [rs.startup, rs.activity.false.max_age(None)], ids=["at startup", "at rest"])
+def test_shutdown_does_not_wait_for_an_endless_background_rule_that_starts_during_the_shutdown(
+    when: rs.Condition,
+) -> None:
+    ending = Ending()
+
+    @ending.rule(when, background=True)
+    async def endless(ctx: rs.RuleContext) -> None:
+        try:
+            await ctx.sleep(3600)
+        finally:
+            ending.told.append(f"cancelled at {ctx.now:g} s")
+
+    @ending.rule(rs.shutdown)
+    async def farewell(ctx: rs.RuleContext) -> None:
+        await ctx.sleep(1)
+        ending.told.append("farewell")
+
+    async def stop_at_once() -> None:
+        async with rs.Context(ending.module):
+            pass
+
+    with asyncio.Runner(loop_factory=VirtualLoop) as loop:
+        loop.run(stop_at_once())
+    assert ending.told == ["farewell", "cancelled at 1 s"]
 
 
 def test_shutdown_waits_for_rules_that_need_an_age_and_for_their_detached_effects() -> None:

@@ -25,6 +25,7 @@ class Conditions:
     near: float
     """The least distance of the camera, in torso lengths."""
     far: float
+    """The greatest distance of the camera, in torso lengths."""
     noise: float
     """The greatest standard deviation of a landmark, in torso lengths; for the depth, three times as much."""
     cut: float

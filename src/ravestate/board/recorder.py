@@ -237,7 +237,10 @@ class Recorders:
 
 
 def fair_length(lengths: list[int], in_all: int) -> int:
-    """Return the maximum length for each recorder. With this limit, the total is at most `in_all`."""
+    """Return the maximum length for each recorder: at least 1.
+
+    With this limit, the total is at most `in_all`, unless there are more than `in_all` recorders.
+    """
     left = in_all
     for number, length in enumerate(sorted(lengths)):
         share = left // (len(lengths) - number)

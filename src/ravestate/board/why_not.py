@@ -169,8 +169,11 @@ class _Inquiry:
             )
         if settled.outcome == Outcome.FAILED:
             return Verdict.FAILED, f"it ran at {seconds(began)} and failed{reason}", at
-        if not settled.fired:
+        if settled.outcome == Outcome.RESIGNED:
             return Verdict.RESIGNED, f"it ran at {seconds(began)} and resigned{reason or ' without a reason'}", at
+        if not settled.fired:  # L20: only a wipe stops a run in this way, even if the stopped run then retires its rule
+            ends = map(Outcome.say, dict.fromkeys((Outcome.WIPED, settled.outcome)))
+            return Verdict.WITHDRAWN, f"{join((f'it ran at {seconds(began)}', *ends))}{reason}", at
         parts = [f"it fired at {seconds(began)}"]
         slots = dict.fromkeys(write.slot for write in self.history.writes.get(attempt.id, ()))
         if slots:

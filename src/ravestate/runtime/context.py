@@ -132,16 +132,19 @@ class Context:
 
         The context raises ``rs.shutdown``. Rules that start from then on have `grace` seconds to finish; the context
         does not wait for rules that run already. Then all async rules are cancelled, and have 5 seconds to clean up.
-        Plain functions cannot be cancelled: they run on, but can no longer act. An endless rule with
-        ``background=True`` does not delay the end. If `stop` itself is cancelled, it stops waiting.
+        Plain functions cannot be cancelled: they run on, but can no longer act. If `stop` itself is cancelled, it stops
+        waiting.
+
+        An endless rule with ``background=True`` does not delay the end. This also holds if the rule has not started yet
+        but has a spike, and if it reacts to ``rs.activity`` or ``rs.pressure``.
         """
         runner = self._running()
         self.ask_to_stop()
         runner.resume()
-        known = runner.waits.alive()
+        known, endless = runner.waits.alive(), runner.waits.endless()
         runner.receive(Stop())
         try:
-            await runner.waits.until_others_end(known, grace)
+            await runner.waits.until_others_end(known, endless, grace)
             await runner.close()
         except asyncio.CancelledError:
             await runner.close(at_once=True)

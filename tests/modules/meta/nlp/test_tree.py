@@ -1,6 +1,8 @@
 """A parsed text is a tree of plain records."""
 
-from ravestate.modules.meta.nlp.tree import Tree, Word
+from typing import Any
+
+from ravestate.modules.meta.nlp.tree import Tree, Word, is_tree
 
 
 def words(notation: str) -> list[Word]:
@@ -60,3 +62,25 @@ def test_a_word_has_its_position_and_a_lower_case_form() -> None:
 def test_a_chain_of_heads_can_have_any_length() -> None:
     long = Tree("", words(" ".join(f"w/NOUN/conj>{max(index - 1, 0)}" for index in range(5000))))
     assert len(long.subtree(long.words[0])) == 5000
+
+
+class Counted(list[Word]):
+    """Words that count how often one of them is looked up."""
+
+    lookups = 0
+
+    def __getitem__(self, place: Any) -> Any:
+        self.lookups += 1
+        return super().__getitem__(place)
+
+
+def test_the_check_for_loops_takes_linear_time() -> None:
+    chain = words(" ".join(f"w/NOUN/conj>{min(index + 1, 1999)}" for index in range(2000)))
+    counted = Counted(chain)
+    assert is_tree(counted)
+    assert counted.lookups <= len(counted)
+
+
+def test_words_whose_heads_form_a_loop_are_no_tree() -> None:
+    assert is_tree(TREE.words)
+    assert not is_tree(words("a/NOUN/conj>1 b/NOUN/conj>2 c/NOUN/conj>1 d/NOUN/ROOT>3"))

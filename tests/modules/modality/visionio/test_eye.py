@@ -3,6 +3,7 @@
 import os
 import shutil
 import signal
+import sys
 import threading
 from collections.abc import Iterator
 from dataclasses import replace
@@ -215,3 +216,54 @@ def test_a_camera_is_closed_even_while_the_worker_is_busy(monkeypatch: pytest.Mo
         assert other.look_now([], {}) == {"picture": [1, 1], "streams": 1}
     finally:
         other.close()
+
+
+CAMERAS = f"""
+import sys
+from unittest.mock import MagicMock
+
+sys.modules["cv2"] = MagicMock()
+sys.path.insert(0, {str(eyes.WORKER.program.parent)!r})
+from worker import Worker
+
+
+def load(config):
+    return Worker().handle
+"""
+"""The worker without its models. It reads no picture."""
+
+
+@pytest.fixture
+def cameras(monkeypatch: pytest.MonkeyPatch, tmp_path: Path) -> Iterator[Eye]:
+    program = tmp_path / "cameras.py"
+    program.write_text(CAMERAS)
+    monkeypatch.setattr(eyes, "WORKER", replace(eyes.WORKER, program=program))
+    one = Eye(Path(sys.executable))
+    yield one
+    one.close()
+
+
+@pytest.mark.parametrize("runs", [False, True])
+def test_a_look_without_an_open_camera_is_reported(cameras: Eye, runs: bool) -> None:
+    if runs:
+        cameras.process.start()
+    for _ in range(2):
+        with pytest.raises(PlatformError, match="no camera is open"):
+            cameras.look_now([], {})
+
+
+def test_a_camera_that_cannot_be_opened_again_is_reported_at_each_look(cameras: Eye, tmp_path: Path) -> None:
+    picture = tmp_path / "photos" / "one.png"
+    picture.parent.mkdir()
+    picture.touch()
+    assert run(cameras.open(str(picture.parent))) is False
+    picture.unlink()
+    cameras.reopen()
+    for _ in range(2):
+        with pytest.raises(PlatformError, match="has no pictures"):
+            cameras.look_now([], {})
+
+
+def test_the_worker_reports_a_look_at_a_camera_that_is_not_open(cameras: Eye) -> None:
+    header = {"do": "look", "stream": "other", "want": [], "at": 0.0}
+    assert cameras.process.request(header, seconds=20)[0] == {"fault": "no camera is open"}

@@ -4,7 +4,8 @@ from collections.abc import Iterator
 
 import pytest
 
-from ravestate.modules.skill.genqa import Answerer, Settings, Turn, following
+from ravestate.modules.skill.genqa import Answer, Answerer, Settings, Turn, following
+from ravestate.modules.skill.genqa.comparing import aged
 from ravestate.modules.skill.genqa.document import Document
 from ravestate.modules.skill.genqa.following import answer_in, other_wording
 from ravestate.modules.skill.genqa.index import Index, IndexedFile
@@ -84,6 +85,17 @@ def test_a_question_about_the_agents_age_causes_no_search(answerer: Answerer, mo
     monkeypatch.setattr(following, "begun", lambda name, _: asked.append(name))
     answer, _ = answer_in(answerer, parse("how old are you?"), [], Settings(), 0.0)
     assert not answer.text
+    assert not asked
+
+
+def test_the_age_of_an_unknown_person_causes_no_search() -> None:
+    asked: list[str] = []
+
+    def search(question: str) -> Answer:
+        asked.append(question)
+        return Answer(question)
+
+    assert aged(parse("how old was she when she died?"), [], search) is None
     assert not asked
 
 

@@ -38,6 +38,8 @@ def test_a_sentence_that_refers_to_the_previous_one_is_joined_to_it() -> None:
         "It weighs 3.5 kilograms, i.e. 7.7 pounds.",
         "On 3. May the U.S. Navy came, with approx. 40 ships.",
         "See www.example.com for more of this kind.",
+        "The plan is by É. Blanc and Ł. Kowal.",
+        "Das sind Häuser bzw. älterer Bestand.",
     ],
 )
 def test_a_full_stop_in_an_abbreviation_or_a_number_does_not_end_a_sentence(sentence: str) -> None:
@@ -46,6 +48,15 @@ def test_a_full_stop_in_an_abbreviation_or_a_number_does_not_end_a_sentence(sent
 
 def test_broken_lines_are_joined() -> None:
     assert texts("The main-\ntenance of the pump\nis due in May.") == ["The maintenance of the pump is due in May."]
+
+
+def test_a_word_that_is_broken_at_a_letter_with_an_accent_is_joined() -> None:
+    assert texts("The fianc-\née and the Grö-\nße of Baden-\nÖs.") == ["The fiancée and the Größe of Baden- Ös."]
+
+
+def test_a_sentence_may_end_with_a_single_small_letter_and_begin_with_any_capital_letter() -> None:
+    assert texts("Der Buchstabe heißt ä. Überall steht er.") == ["Der Buchstabe heißt ä.", "Überall steht er."]
+    assert texts("Это сказал я. Она молчала.") == ["Это сказал я.", "Она молчала."]
 
 
 def test_numbers_lines_and_captions_without_a_sentence_are_left_out() -> None:

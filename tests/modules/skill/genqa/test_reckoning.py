@@ -115,6 +115,12 @@ def test_numbers_with_units_come_before_numbers_without_units() -> None:
     ]  # fmt: skip
 
 
+def test_numbers_of_an_earlier_text_come_last() -> None:
+    assert [(q.value, q.unit) for q in measured("It is 3 or 4 metres.", after="It costs 9 euros.")] == [
+        (4, "metre"), (3, ""), (9, "money:euro"),
+    ]  # fmt: skip
+
+
 def test_each_date_says_whether_it_is_exact_and_has_a_year() -> None:
     assert [(each.exact, each.has_year, str(each)) for each in dates_in("from 3 May to June 2024, or 1989")] == [
         (True, False, "3 May 2000"), (False, True, "2024"), (False, True, "1989"),

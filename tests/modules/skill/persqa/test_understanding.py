@@ -109,6 +109,11 @@ def test_a_request_for_advice_is_not_answered_from_the_users_statements(text: st
     assert told and understand(seen(text), Talk(), {}, 1.0, 90.0, told).kind != "asked_told"
 
 
+def test_a_question_for_what_the_user_cannot_do_is_answered_from_their_statements() -> None:
+    told = understand(seen("I can not eat nuts"), Talk(), {}, 1.0, 90.0).said
+    assert understand(seen("what can I not eat?"), Talk(), {}, 1.0, 90.0, told).kind == "asked_told"
+
+
 def test_a_relative_clause_is_retold_as_a_sentence() -> None:
     said = understand(seen("there is a boy called Ole who shouts at me sometimes"), Talk(), {}, 1.0, 90.0).said
     assert [one.text for one in said] == ["there is a boy called Ole who shouts at you sometimes"]

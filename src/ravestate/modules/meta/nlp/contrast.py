@@ -13,7 +13,7 @@ from dataclasses import dataclass, replace
 from ravestate.language.contractions import word_set
 
 from .phrase import Phrase, phrase_of
-from .tree import SUBJECTS, Tree, Word
+from .tree import SUBJECTS, Tree, Word, is_tree
 from .verbs import NEGATIONS, PLACES, VERBAL
 
 _NOUNS = ("NOUN", "PROPN", "NUM", "PRON", "X")
@@ -179,17 +179,7 @@ def _joined(tree: Tree, right: Word, wrong: Word, negation: Word, span: Sequence
     kind = {"pos": right.pos, "tag": right.tag, "lemma": wrong.text} if verbal else {}
     words[wrong.index] = replace(wrong, dep="conj", head=right.index, **kind)
     words[negation.index] = replace(words[negation.index], dep="neg", head=wrong.index)
-    return words if _is_tree(words) else list(tree.words)
-
-
-def _is_tree(words: Sequence[Word]) -> bool:
-    """Return whether the heads above each word lead to a root, without a loop."""
-    for word in words:
-        for _ in words:
-            word = words[word.head]
-        if word.head != word.index:
-            return False
-    return True
+    return words if is_tree(words) else list(tree.words)
 
 
 def _span(tree: Tree, start: int) -> list[Word]:

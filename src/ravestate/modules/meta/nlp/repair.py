@@ -9,7 +9,7 @@ from ravestate.language.contractions import word_set
 
 from .contrast import join_contrasts
 from .question_word import AUXILIARIES, QUESTION_WORDS
-from .tree import Tree, Word
+from .tree import Tree, Word, is_tree
 
 _NEGATIONS = ("n't", "not", "nt")
 _BE = ("is", "are", "was", "were")
@@ -48,26 +48,12 @@ def repaired(tree: Tree) -> Tree:
             words[word.index] = replace(word, dep="poss")
         if word.dep == "advmod" and word.pos == "PROPN" and word.head == word.index - 1:  # as in "you speak Greek"
             words[word.index] = replace(word, dep="dobj")
-    if not _is_tree(words):
+    if not is_tree(words):
         return tree
     for mend in (_split_relatives, join_contrasts):
         mended = mend(Tree(tree.text, words))
-        words = mended if _is_tree(mended) else words
+        words = mended if is_tree(mended) else words
     return tree if words == list(tree.words) else Tree(tree.text, words)
-
-
-def _is_tree(words: Sequence[Word]) -> bool:
-    """Return whether each word leads to a root. Two repairs of one sentence may contradict each other and make a loop."""
-    rooted: set[int] = set()
-    for word in words:
-        path: set[int] = set()
-        while word.index not in rooted and word.head != word.index:
-            if word.index in path:
-                return False
-            path.add(word.index)
-            word = words[word.head]
-        rooted |= path | {word.index}
-    return True
 
 
 def is_tag(word: Word) -> bool:

@@ -101,3 +101,20 @@ class Tree:
             written += word.text
             last = word
         return written
+
+
+def is_tree(words: Sequence[Word]) -> bool:
+    """Return whether the heads above each word lead to a root, without a loop.
+
+    Two repairs of one sentence may contradict each other and make a loop. The time is linear in the number of words.
+    """
+    rooted: set[int] = set()
+    for word in words:
+        path: set[int] = set()
+        while word.index not in rooted and word.head != word.index:
+            if word.index in path:
+                return False
+            path.add(word.index)
+            word = words[word.head]
+        rooted |= path | {word.index}
+    return True

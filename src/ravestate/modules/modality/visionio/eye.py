@@ -49,7 +49,7 @@ class Eye:
         self._process: ModelProcess = process.take(WORKER, {"want": ["faces"]}, eyes_python(python))
         self._stream = str(next(_numbers))
         self._source: tuple[str, bool] | None = None
-        self._pid: int | None = None
+        self._pid: int | None = None  # the worker's process that has opened the camera
 
     @property
     def process(self) -> ModelProcess:
@@ -77,7 +77,8 @@ class Eye:
             frame: The picture; None to look at the open camera.
 
         Raises:
-            PlatformError: The picture or the camera has a fault, or the worker has died. The next look tries again.
+            PlatformError: The picture or the camera has a fault, no camera is open, or the worker has died. The next
+                look tries again.
         """
         return await asyncio.to_thread(self.look_now, want, request, at=at, frame=frame)
 
@@ -88,8 +89,8 @@ class Eye:
         header: dict[str, Any] = {"do": "look", "stream": self._stream, "want": list(want), "at": at, **request}
         if frame is not None and frame.shape is not None:
             header |= {"shape": list(frame.shape), "encoding": frame.encoding, "step": frame.step}
-        if frame is None and self._pid != self._process.pid:
-            self._open()  # a new worker has replaced the old one
+        if frame is None and (self._pid is None or self._pid != self._process.pid):
+            self._open()  # the camera was never open, or a new worker has replaced the old one
         data = b"" if frame is None else frame.data
         if frame is not None and not data:
             raise PlatformError("visionio: the picture is empty")
@@ -125,7 +126,7 @@ class Eye:
         answer, _ = self._process.request(
             {"do": "open", "stream": self._stream, "source": source, "loop": loop}, seconds=PATIENCE
         )
-        self._pid = self._process.pid
         if "fault" in answer:
             raise PlatformError(f"visionio: {answer['fault']}")
+        self._pid = self._process.pid
         return answer["live"]

@@ -71,9 +71,11 @@ def aged(heard: Parse, thread: Sequence[Turn], ask: Callable[[str], Answer]) -> 
     if heard.kind is None or "how" not in low[:2] or not (lived or died or ("old" in low and when < len(words))):
         return None
     name = next((found for word in words[:when] if (found := _name(heard, word, thread))), "")
+    if not name:
+        return None
     event = [name if word.low in ("he", "she", "they", "it") else word.text for word in words[when + 1 :]]
     born, then = ask(f"when was {name} born?"), ask(f"when {' '.join(event) or f'did {name} die'}?")
-    if not name or not dates_in(born.text) or not dates_in(then.text):
+    if not dates_in(born.text) or not dates_in(then.text):
         return None
     return _both(heard, _years(born, then), born, then)
 

@@ -150,12 +150,12 @@ def _times(spoken: str, told: Sequence[str]) -> str:
     return f"That is {_number(total)} {prices[0][0].word}."
 
 
-def measured(text: str, after: Sequence[str] = ()) -> list[Quantity]:
+def measured(text: str, after: str = "") -> list[Quantity]:
     """Return the numbers of a text; numbers with a unit come first.
 
     Args:
         text: The text.
-        after: Earlier texts. The numbers of the last of these texts come after the numbers of `text`.
+        after: An earlier text, or an empty one. Its numbers come after the numbers of `text`.
     """
     found: list[Quantity] = []
     spoken = re.sub(r"\bdegrees? (?=[cf])", "", _in_digits(text))
@@ -171,7 +171,7 @@ def measured(text: str, after: Sequence[str] = ()) -> list[Quantity]:
             unit = f"{unit}**2" if unit and power > 1 else unit
             found.append(Quantity(int(number) if number == int(number) else number, unit, word if unit else ""))
     found.sort(key=lambda quantity: not quantity.unit)
-    return found + (measured(after[-1]) if after else [])
+    return found + (measured(after) if after else [])
 
 
 def focused(question: str, answer: str) -> str:
@@ -220,7 +220,7 @@ def _sum(spoken: str, told: Sequence[str], rates: Mapping[str, float]) -> str:
         text = re.sub(rf"(?<= ){pattern}(?= )", instead, text)
     for phrase, sign in (*words["joined"].items(), *words["operators"].items()):
         text = text.replace(f" {phrase} " if phrase[0].isalpha() else phrase, f" {sign} ")
-    known = measured(told[-1], told[:-1][-1:]) if told else []
+    known = measured(told[-1], "".join(told[-2:-1])) if told else []
     tokens = _TOKEN.findall(re.sub(r"(?<=\d)\s*x\s*(?=\d)", "*", text))
     parts: list[str] = []
     units: list[str] = []

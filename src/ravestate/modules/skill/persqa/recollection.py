@@ -11,6 +11,8 @@ from ravestate.language.contractions import word_set
 from ravestate.language.reranker import Reranker
 from ravestate.modules import nlp
 
+from .advice import may_ask_for_help
+
 CLEARLY = 2.0
 """The least lead of the best sentence over the second best, in logits (raw scores of the network). Scores alone say too
 little, because some questions have higher scores than others."""
@@ -25,13 +27,6 @@ SHORTEST = 3
 
 _MINE = word_set("i my me mine we our us")
 _REMINDING = word_set("remember recall told said tell say mention mentioned")
-_ADVICE = re.compile(
-    r"\bhow (?:do|can|could|would|might) (?:i|we)\b|\b(?:should|shall|ought|may|might|can|could|do|would) (?:i|we)\b(?! not)"
-    r"|\b(?:i|we) (?:should|ought|could)\b|\b(?:do|would|are|can|could|will) you\b(?! (?:still )?(?:remember|recall|know|tell))",
-    re.IGNORECASE,
-)
-"""Questions for advice, a favour or an opinion, not for memories."""
-
 _SAID = re.compile(
     r"\b(?:did|was) (?:i|we) (?:just |already |been )?(?:say|said|tell|telling|told|mention)", re.IGNORECASE
 )
@@ -52,7 +47,7 @@ def asks_for_words(seen: nlp.Analysis) -> bool:
     reminding = words & told and words & {"i", "you"}
     if not reminding and seen.move is not None and (seen.move.name != "recall" or seen.move.score < LIKELY):
         return False
-    return bool(reminding or words & _MINE) and (bool(words & {"remember", "recall"}) or not _ADVICE.search(question))
+    return bool(reminding or words & _MINE) and (bool(words & {"remember", "recall"}) or not may_ask_for_help(question))
 
 
 def recollect(question: str, sentences: Sequence[str]) -> str:

@@ -14,6 +14,7 @@ from ravestate.language.normal import plain
 from ravestate.modules import nlp
 from ravestate.modules.meta.nlp.tree import SUBJECTS, Tree, Word
 
+from .advice import asks_for_advice
 from .answers import spelled_out
 from .changes import is_brief
 from .kinds import likeness
@@ -43,11 +44,6 @@ _FIT[nlp.QuestionWord.AMOUNT] = re.compile(
 _CONTENT = frozenset(["NOUN", "PROPN", "ADJ", "VERB", "NUM"])
 _MINE = frozenset(["i", "my", "me", "we", "our", "remember", "again", "he", "she", "him", "her", "his"])
 _REMINDING = frozenset(["tell", "say", "mention", "know", "learn", "remember"])
-_ADVICE = re.compile(
-    r"\bhow (?:do|can|could|would|might) (?:i|we)\b|\b(?:should|shall|may|might|can) (?:i|we)\b|\b(?:do|would) you think\b",
-    re.IGNORECASE,
-)
-"""Questions for advice or an opinion, not for memories."""
 _EMPTY = re.compile(r"\b(?:am|is|are|was|were)\W*$", re.IGNORECASE)
 """The end of a statement that lacks its last word: in *my hobby is rowing*, the parser takes *rowing* for the verb."""
 _THEIRS = re.compile(r"^(?:his|her|their)\b", re.IGNORECASE)
@@ -164,7 +160,7 @@ def recalled(reader: Reader, told: Iterable[Told], known: Facts) -> list[Told]:
     mine = bool(reader.words & _MINE)
     if asked is not None and (asked.subject.of("you") or (_is_general(reader, asked.subject.text) and not mine)):
         return []
-    if _ADVICE.search(reader.tree.text) and "remember" not in reader.words:
+    if asks_for_advice(reader.tree.text) and "remember" not in reader.words:
         return []
     if asked is None or kind is None:
         return []

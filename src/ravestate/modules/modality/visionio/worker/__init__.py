@@ -15,8 +15,8 @@ is the answer to a look:
      "ended": false, "skipped": 0, "waited": 0.02}
 
 The last line is there only for a look at a camera. ``track`` is null for a new face. ``quality`` and ``vector`` are null
-if the look has computed no vector for the face. An answer has ``fault`` if a camera or a picture has a fault. If there
-is no new picture, the answer has no field ``picture``.
+if the look has computed no vector for the face. An answer has ``fault`` if a camera or a picture has a fault, or if a
+look needs a camera and none is open. If there is no new picture, the answer has no field ``picture``.
 
 `Faces.find` explains the field ``known`` of a look, and two more fields: ``thorough`` and ``most``.
 
@@ -114,7 +114,7 @@ class Stream:
     def picture(self, at: float) -> tuple[picture.Picture | None, dict[str, Any]]:
         """Return the camera's newest picture at a time, or None. Also return the first fields of the answer."""
         if self._camera is None:
-            return None, {"closed": True}
+            return None, {"fault": "no camera is open"}
         before = time.monotonic()
         try:
             seen, fault = self._camera.picture(at), ""
