@@ -630,13 +630,10 @@ def test_shutdown_does_not_wait_for_a_background_loop() -> None:
     assert ending.told == ["farewell", "1.35 s"]
 
 
-@pytest.mark.parametrize("when", [rs.startup, rs.activity.false.max_age(None)], ids=["at startup", "at rest"])
-def test_shutdown_does_not_wait_for_an_endless_background_rule_that_starts_during_the_shutdown(
-    when: rs.Condition,
-) -> None:
+def test_shutdown_does_not_wait_for_an_endless_background_rule_that_waits_for_rest() -> None:
     ending = Ending()
 
-    @ending.rule(when, background=True)
+    @ending.rule(rs.activity.false.max_age(None), background=True)
     async def endless(ctx: rs.RuleContext) -> None:
         try:
             await ctx.sleep(3600)
@@ -655,6 +652,25 @@ def test_shutdown_does_not_wait_for_an_endless_background_rule_that_starts_durin
     with asyncio.Runner(loop_factory=VirtualLoop) as loop:
         loop.run(stop_at_once())
     assert ending.told == ["farewell", "cancelled at 1 s"]
+
+
+def test_shutdown_waits_for_a_background_rule_whose_input_comes_just_before() -> None:
+    """A robot must get its last command, such as the one that stops its motors."""
+    ending = Ending()
+
+    @ending.rule(ending.go, background=True)
+    async def send(ctx: rs.RuleContext) -> None:
+        await ctx.sleep(0.5)
+        ending.told.append("sent")
+
+    async def stop_at_once() -> None:
+        async with rs.Context(ending.module) as ctx:
+            await ctx.quiet()
+            ctx.emit(ending.go)
+
+    with asyncio.Runner(loop_factory=VirtualLoop) as loop:
+        loop.run(stop_at_once())
+    assert ending.told == ["sent"]
 
 
 def test_shutdown_waits_for_rules_that_need_an_age_and_for_their_detached_effects() -> None:

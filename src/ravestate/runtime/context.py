@@ -135,16 +135,16 @@ class Context:
         Plain functions cannot be cancelled: they run on, but can no longer act. If `stop` itself is cancelled, it stops
         waiting.
 
-        An endless rule with ``background=True`` does not delay the end. This also holds if the rule has not started yet
-        but has a spike, and if it reacts to ``rs.activity`` or ``rs.pressure``.
+        An endless rule with ``background=True`` does not delay the end. This also holds if the rule reacts only to
+        ``rs.activity`` or ``rs.pressure``, and starts during the shutdown.
         """
         runner = self._running()
         self.ask_to_stop()
         runner.resume()
-        known, endless = runner.waits.alive(), runner.waits.endless()
+        known = runner.waits.alive()
         runner.receive(Stop())
         try:
-            await runner.waits.until_others_end(known, endless, grace)
+            await runner.waits.until_others_end(known, grace)
             await runner.close()
         except asyncio.CancelledError:
             await runner.close(at_once=True)

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import asyncio
 import contextlib
-from collections.abc import Callable, Collection, Mapping
+from collections.abc import Callable, Mapping
 
 from ravestate.engine.activation import NEVER, Activation
 from ravestate.engine.engine import Engine
@@ -74,35 +74,25 @@ class Waits:
         """Return the activations that run, or are ready and wait to run, by number."""
         return {a.id: a for a in (*self._engine.running.values(), *self._engine.waiting)}
 
-    def endless(self) -> set[str]:
-        """Return the names of the background rules that run or hold a spike. Such a rule may run endlessly."""
-        return {
-            activation.clause.rule.name
-            for activations in self._engine.state.active.values()
-            for activation in activations
-            if activation.clause.rule.background
-        }
-
-    async def until_others_end(self, known: Mapping[int, Activation], endless: Collection[str], seconds: float) -> None:
+    async def until_others_end(self, known: Mapping[int, Activation], seconds: float) -> None:
         """Wait until all activations outside `known` have ended.
 
         Also wait while an activation that holds a spike of ``rs.shutdown`` waits for the `min_age` of one of its
-        spikes. A background rule may run endlessly, if `endless` names it, or if it reacts only to ``rs.activity`` or
-        ``rs.pressure``. So wait for a run of such a rule only if ``rs.shutdown`` led to that run. In any case, wait for
-        at most `seconds`.
+        spikes. A background rule may run endlessly, if it has an activation in `known`, or reacts only to
+        ``rs.activity`` or ``rs.pressure``. So wait for a new run of such a rule only if ``rs.shutdown`` led to that run.
+        In any case, wait for at most `seconds`.
         """
         engine = self._engine
         shutdown = engine.policy.signal_of["core:shutdown"].index
         flags = {signal for name in FLAGS for signal in engine.policy.slot_of[name].signals}
+        loops = {a.clause.rule.name for a in known.values() if a.clause.rule.background}
 
         def counts(activation: Activation) -> bool:
-            rule = activation.clause.rule
-            if not rule.background:
-                return True
-            spikes = [spike for spike in activation.spikes if spike is not None]
+            rule, spikes = activation.clause.rule, [spike for spike in activation.spikes if spike is not None]
             if any(spike.comes_from("core:shutdown") for spike in spikes):
                 return True
-            return rule.name not in endless and any(spike.signal not in flags for spike in spikes)
+            endless = rule.background and all(spike.signal in flags for spike in spikes)
+            return rule.name not in loops and not endless
 
         def done() -> bool:
             if any(holder.ripens != NEVER for s in engine.state.live.get(shutdown, ()) for holder in s.holders):
