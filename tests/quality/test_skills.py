@@ -53,10 +53,10 @@ def test_facts_are_understood_in_sentences_that_nobody_has_seen() -> None:
 def test_most_replies_that_the_listener_chooses_suit_and_few_are_wrong() -> None:
     kinds, grades = responses.results()
     print(kinds.shares, grades.shares, *kinds.misses, *grades.misses, sep="\n  ")
-    assert kinds.shares["suits"] >= 0.56  # the grades choose the reply, and the kinds only help
+    assert kinds.shares["suits"] >= 0.54  # the grades choose the reply, and the kinds only help
     assert kinds.shares["wrong"] <= 0.06
-    assert grades.shares["good"] >= 0.57
-    assert grades.shares["bad"] <= 0.22
+    assert grades.shares["good"] >= 0.56
+    assert grades.shares["bad"] <= 0.23
 
 
 @pytest.mark.parametrize("name", skills.SETS)
