@@ -30,5 +30,5 @@ def test_every_text_has_a_class(text: str) -> None:
     answers = Classifier("answers")
     answers.load()
     name, probability = answers.best(text)
-    assert name in ("yes 2", "yes 1", "no 2", "no 1", "unsure", "-", "")
+    assert name in (("yes 2", "yes 1", "no 2", "no 1", "unsure", "-") if text.strip() else ("",))
     assert 0 <= probability <= 1.001

@@ -28,12 +28,13 @@ def test_each_token_has_a_vector_of_several_layers() -> None:
     assert vectors.shape == (4, len(LAYERS[BUNDLED]) * 384)
 
 
-def test_one_run_serves_all_heads(monkeypatch: pytest.MonkeyPatch) -> None:
+def test_one_run_gives_the_outputs_of_all_heads_and_they_are_kept() -> None:
     network().load()
     first = network().read("I live in Leeds, and you?")
     assert network().read("I live in Leeds, and you?") is first
     assert {"answers", "kinds", "moves", "facts", "replies"} <= first.keys()
-    assert len(first["facts"]) == len(network().spans("I live in Leeds, and you?"))
+    assert len(first["facts"]) == len(first["spans"])
+    assert not any(output.flags.writeable for name, output in first.items() if name != "spans")
 
 
 def test_the_fact_that_the_agent_has_asked_for_changes_the_tags() -> None:

@@ -28,6 +28,7 @@ def test_no_reply_has_a_grade_before_the_network_is_loaded(tmp_path: Path) -> No
 def test_grades_go_from_0_to_2_and_kinds_are_probabilities(text: str, before: str, said: str) -> None:
     grades, kinds = replies().grades(text, before, said), replies().kinds(text, before, said)
     assert all(0 <= grade <= 2 for grade, _ in grades.values())
+    assert bool(grades) == bool(kinds) == bool(text.strip())
     assert not kinds or sum(kinds.values()) == pytest.approx(1, abs=0.01)
 
 

@@ -3,12 +3,13 @@
 from __future__ import annotations
 
 from pathlib import Path
+from typing import Any
 
 import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from ravestate.language.network import Network
+from ravestate.language.network import Network, network
 from ravestate.language.tagger import Tag, Tagger, tagger
 
 
@@ -57,3 +58,26 @@ def test_tags_lie_in_the_text_one_after_the_other(text: str) -> None:
         assert text[tag.start : tag.end] == tag.text
         assert 0 <= tag.score <= 1.001
         last = tag.end
+
+
+def test_a_network_that_finishes_loading_during_a_call_causes_no_error() -> None:
+    """Another thread may load the network between the look at its labels and the reading."""
+
+    class Late(Network):
+        asked = 0
+
+        @property
+        def loaded(self) -> bool:
+            self.asked += 1
+            return self.asked > 1
+
+        def labels(self, head: str) -> list[str]:
+            return network().labels(head) if self.loaded else []
+
+        def read(self, *arguments: Any, **named: Any) -> Any:
+            return network().read(*arguments, **named) if self.loaded else {}
+
+    network().load()
+    late = Tagger(Late(Path("missing.onnx")))
+    assert late.tags("I live in Leeds.") == []
+    assert found_in(late.tags("I live in Leeds.")) == {("home", "Leeds", False)}

@@ -5,16 +5,17 @@ from __future__ import annotations
 from pathlib import Path
 
 from quality.measure import labelled
-from ravestate.language.moves import Move, move_of
+from ravestate.language.moves import Move
 from ravestate.language.network import network
-from ravestate.language.normal import normalise
+from ravestate.modules.meta.nlp.analysis import analyse
+from ravestate.modules.meta.nlp.pipeline import pipeline
 
 ROWS = labelled("moves_rows")
-TRAINING = Path(__file__).parents[2] / "tools" / "networks" / "moves"
+TRAINING = Path(__file__).parents[2] / "tools" / "networks"
 
 
 def found_for(text: str) -> Move:
-    found = move_of(normalise(text).unguessed, asks="?" in normalise(text).text)
+    found = analyse(text, pipeline("")).move
     assert found is not None
     return found
 
@@ -34,7 +35,7 @@ def test_in_unseen_conversations_half_of_all_moves_and_most_of_the_sure_moves_ar
 
 
 def test_at_most_three_sentences_of_the_set_are_also_training_sentences() -> None:
-    lines = (line for file in TRAINING.glob("*.tsv") for line in file.read_text(encoding="utf-8").splitlines())
+    lines = (line for file in TRAINING.rglob("*.tsv") for line in file.read_text(encoding="utf-8").splitlines())
     known = {line.partition("\t")[0].lower() for line in lines}
     shared = {text.lower() for text, _ in ROWS} & known
     assert len(shared) <= 3  # users ask "what do you know about me?" in many conversations

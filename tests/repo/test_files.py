@@ -95,3 +95,8 @@ def test_no_test_sleeps_in_real_time() -> None:
     tests = [file for file in kept_files() if file.is_relative_to(ROOT / "tests") and file.suffix == ".py"]
     found = lines_matching(re.compile(r"\b(?:time|asyncio)\.sleep\((?!0\))"), tests)
     assert not found, "\n".join(found)
+
+
+def test_no_file_has_the_marks_of_an_unfinished_merge() -> None:
+    marks = re.compile("^(?:<{7}|>{7}) ")
+    assert lines_matching(marks, kept_files()) == []

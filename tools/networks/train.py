@@ -9,16 +9,18 @@ pip install torch onnx
 
 from __future__ import annotations
 
+import argparse
 import random
 import sys
 import time
+from collections import Counter
 from collections.abc import Sequence
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
 from classes import Classes
-from facts import Facts
+from facts import LABELS, Facts
 from replies import Replies
 from rows import LAYERS, WIDTH, Row, batches, digest, padded
 from trunk import trunk
@@ -88,8 +90,9 @@ def train(torch: Any, made: Any, lessons: dict[str, Any], stage: Stage) -> None:
     groups = [{"params": heads}, *([] if frozen else [{"params": list(trunk.layers.parameters())}])]
     rates = [stage.rate, stage.trunk_rate][: len(groups)]
     optimiser = torch.optim.AdamW(groups, weight_decay=0.05)
-    # The order of the batches is random, so the number of steps may differ a little between two epochs.
-    steps = stage.epochs * (len(epoch_of()) + 1)
+    made.zero_grad()  # an earlier stage leaves gradients of parts that this stage does not train
+    sizes = (round(share * len(lessons[name].rows)) for name, share in stage.shares.items())
+    steps = stage.epochs * sum(-(-size // BATCH) for size in sizes)
     schedule = torch.optim.lr_scheduler.OneCycleLR(optimiser, rates, total_steps=steps, pct_start=0.1)
     for epoch in range(stage.epochs):
         began, lost = time.monotonic(), dict.fromkeys(stage.shares, 0.0)
@@ -97,6 +100,7 @@ def train(torch: Any, made: Any, lessons: dict[str, Any], stage: Stage) -> None:
         if frozen:
             trunk.eval()
         told = epoch_of()
+        counts = Counter(name for name, _ in told)
         for done, (name, batch) in enumerate(told):
             if done % 200 == 0:
                 print(f"epoch {epoch + 1} of {stage.epochs}: {done / len(told):.0%}", end="\r", flush=True)
@@ -108,7 +112,7 @@ def train(torch: Any, made: Any, lessons: dict[str, Any], stage: Stage) -> None:
             torch.nn.utils.clip_grad_norm_(made.parameters(), 1.0)
             optimiser.step()
             schedule.step()
-            lost[name] += loss.item() / sum(one == name for one, _ in told)
+            lost[name] += loss.item() / counts[name]
         losses = ", ".join(f"{name} {loss:.3f}" for name, loss in lost.items())
         print(f"epoch {epoch + 1} of {stage.epochs}: {losses}, {time.monotonic() - began:.0f} s", flush=True)
     made.eval()
@@ -150,11 +154,13 @@ def known_sentences() -> str:
 
 def main(arguments: Sequence[str]) -> int:
     """Train and write, or check; return the exit code."""
-    if "--check" in arguments:
+    parser = argparse.ArgumentParser(description="Train the network that reads utterances.")
+    parser.add_argument("--check", action="store_true", help="train nothing; exit code 1 if the sentences have changed")
+    if parser.parse_args(arguments).check:
         import onnxruntime
 
         about = onnxruntime.InferenceSession(str(OUT)).get_modelmeta().custom_metadata_map
-        same = about["sentences"] == known_sentences()
+        same = about["sentences"] == known_sentences() and about["facts"] == ";".join(LABELS)
         print(
             "reader.onnx knows these sentences"
             if same

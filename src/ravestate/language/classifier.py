@@ -46,7 +46,7 @@ class Classifier:
     def best(self, text: str) -> tuple[str, float]:
         """Return the likeliest class of a text in normal form, and its probability; an empty class before `load`.
 
-        A text takes about 8 ms on one core, or nothing if the network has just read it for another purpose.
+        A text takes about 8 ms on one core, or no time if the network has just read it for another head.
         """
         return next(iter(self.ranked(text)), ("", 0.0))
 

@@ -1,4 +1,4 @@
-"""The network that reads an utterance: one run, and an output for each purpose.
+"""The network that reads an utterance, with an output for each purpose.
 
 The network (``reader.onnx``) continues the bundled sentence model: its own six layers read the vectors that the sentence
 model has after its sixth layer. Several small heads read the result. They find the meaning of an answer, the kind of a
@@ -33,8 +33,9 @@ BEFORE = 24
 the agent's answer to that utterance."""
 EARLIER, SAID = 2, 3
 """`EARLIER` marks the tokens of the user's previous utterance. `SAID` marks the tokens of the agent's answer to it."""
-LATEST = 64
-"""The number of texts whose outputs are kept, because several modules read one utterance. A text takes 12 kB."""
+LATEST, VECTORS = 64, 8
+"""The number of texts whose outputs are kept, because several modules read one utterance; and the number of texts whose
+vectors are kept. The outputs of a short text take 13 kB, and the vectors of a token 8 kB."""
 
 
 class Network:
@@ -91,7 +92,7 @@ class Network:
         try:
             session = runtime.InferenceSession(str(self._file), options, providers=["CPUExecutionProvider"])
             about: Mapping[str, str] = session.get_modelmeta().custom_metadata_map
-            self._labels = {head: labels.split(";") for head, labels in about.items()}
+            self._labels = {head: labels.split(";") for head, labels in about.items() if head != "sentences"}
             self._outputs = [one.name for one in session.get_outputs()]
         except Exception as error:  # the library has its own exceptions, with long messages
             raise PlatformError(f"the network {str(self._file)!r} is broken: install ravestate again") from error
@@ -104,6 +105,8 @@ class Network:
     def read(self, text: str, before: str = "", said: str = "", asked: int = 0) -> Mapping[str, NDArray[Any]]:
         """Return the outputs for a text by their names, each without its first axis; none before `load`.
 
+        ``spans`` is the span of each token of the text, shape (tokens, 2). The network reads at most 512 tokens.
+
         Args:
             text: One or more sentences in normal form.
             before: The user's previous utterance in normal form; empty if there is none.
@@ -112,10 +115,6 @@ class Network:
                 from 1; 0 if it has asked for none.
         """
         return self._latest(text, before, said, asked) if self.loaded and text.strip() else {}
-
-    def spans(self, text: str) -> list[tuple[int, int]]:
-        """Return the span of each token in a text."""
-        return _vectors(text)[0]
 
     def _read(self, text: str, before: str, said: str, asked: int) -> Mapping[str, NDArray[Any]]:
         import numpy as np
@@ -126,11 +125,14 @@ class Network:
             if earlier:
                 tokens = _vectors(earlier)[1][:BEFORE]
                 vectors, marks = np.concatenate([tokens, vectors]), [mark] * len(tokens) + marks
-        given = {"vectors": vectors[None], "marks": np.array([marks]), "asked": np.array([asked])}
-        return dict(zip(self._outputs, (one[0] for one in self._session.run(None, given)), strict=True))
+        numbers = {"marks": np.array([marks], dtype=np.int64), "asked": np.array([asked], dtype=np.int64)}
+        found = [one[0] for one in self._session.run(None, {"vectors": vectors[None], **numbers})]
+        for one in found:
+            one.flags.writeable = False  # all readers share the arrays
+        return {**dict(zip(self._outputs, found, strict=True)), "spans": np.array(spans)}
 
 
-@lru_cache(LATEST)
+@lru_cache(VECTORS)
 def _vectors(text: str) -> tuple[list[tuple[int, int]], NDArray[Any]]:
     return model_in(None, BUNDLED).token_vectors(text)
 

@@ -55,8 +55,8 @@ class Replies:
 
     def kinds(self, text: str, before: str = "", said: str = "") -> Mapping[str, float]:
         """Return the probability of each kind of reply. For the arguments, see `grades`."""
-        likely = (chance for _, chance in self.grades(text, before, said).values())
-        return dict(zip(self._network.labels(KINDS), likely, strict=False))
+        outputs = self._network.read(text[:LONGEST], before=before[:LONGEST], said=said[:LONGEST])
+        return dict(zip(self._network.labels(KINDS), outputs[LIKELY].tolist(), strict=True)) if outputs else {}
 
     def _graded(self, text: str, before: str, said: str) -> Mapping[str, tuple[float, float]]:
         outputs = self._network.read(text, before=before, said=said)

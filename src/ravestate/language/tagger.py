@@ -67,17 +67,19 @@ class Tagger:
             text: One or more sentences in normal form.
             context: The label of the value that the agent has just asked for, so that a fragment may be the answer.
         """
+        if not self.loaded:
+            return []
         labels = self._network.labels(HEAD)
         outputs = self._network.read(text, asked=labels.index(context) + 1 if context in labels else 0)
         if not outputs:
             return []
-        return _decoded(text, labels, self._network.spans(text), outputs[HEAD], outputs[DENIALS])
+        return _decoded(text, labels, outputs["spans"].tolist(), outputs[HEAD], outputs[DENIALS])
 
 
 def _decoded(
     text: str,
     labels: Sequence[str],
-    spans: Sequence[tuple[int, int]],
+    spans: Sequence[Sequence[int]],
     chances: NDArray[np.float32],
     denials: NDArray[np.float32],
 ) -> list[Tag]:

@@ -1,3 +1,5 @@
+from pathlib import Path
+
 """Properties that hold for the meaning of any answer. `tests/quality` measures how often the meaning is right."""
 
 import pytest
@@ -6,6 +8,8 @@ from hypothesis import strategies as st
 
 from quality.measure import labelled
 from ravestate.language.network import Network, network
+from ravestate.language.normal import normalise
+from ravestate.modules import nlp
 from ravestate.modules.meta.nlp.analysis import analyse
 from ravestate.modules.meta.nlp.answer import YesNo, yesno_of
 from ravestate.modules.meta.nlp.pipeline import pipeline
@@ -72,3 +76,22 @@ def test_a_letter_is_no_answer_unless_it_stands_for_one() -> None:
     assert not any(yesno_of(text) for text in ("A.", "b", "o", "?", ""))
     assert not analyse("a" * 300, pipeline("")).yesno
     assert yesno_of("Yes.").yes
+
+
+def examples_in_the_readme() -> list[tuple[str, YesNo]]:
+    """Return the answers in the table of the README, each with its meaning."""
+    row = re.compile(r"\| `yes=(\w+), no=(\w+), unsure=(\w+)`[^|]*\| `([^`|]*)` \|")
+    readme = (Path(nlp.__file__).parent / "README.md").read_text(encoding="utf-8")
+    return [
+        (text, YesNo(*map(ast.literal_eval, found.group(1, 2, 3))))
+        for found in row.finditer(readme)
+        for text in found[4].split(", ")
+    ]
+
+
+def test_the_answers_in_the_readme_have_the_meanings_that_it_promises() -> None:
+    network().load()
+    examples = examples_in_the_readme()
+    wrong = [(text, meaning) for text, meaning in examples if yesno_of(normalise(text).unguessed) != meaning]
+    assert len(examples) > 70
+    assert wrong == []

@@ -38,9 +38,9 @@ class YesNo:
 PLAIN = {
     "yes 2": "yes yeah yep yup aye sure ok okay certainly absolutely definitely of_course yes_please",
     "no 2": "no nope nah never no_way no_thanks no_thank_you certainly_not of_course_not absolutely_not",
-    "yes 1": "probably i_guess_so i_think_so kind_of sort_of",
-    "no 1": "not_really probably_not i_do_not_think_so rather_not",
-    "unsure": "maybe perhaps i_do_not_know no_idea not_sure it_depends",
+    "yes 1": "probably i_guess_so i_think_so kind_of sort_of why_not",
+    "no 1": "not_really probably_not i_do_not_think_so rather_not not_now",
+    "unsure": "maybe perhaps i_do_not_know no_idea not_sure it_depends beats_me",
 }
 """A class → its answers. An underscore stands for a space."""
 _PLAIN = {words.replace("_", " "): name for name, listed in PLAIN.items() for words in listed.split()}
