@@ -1,6 +1,8 @@
-from pathlib import Path
-
 """Properties that hold for the meaning of any answer. `tests/quality` measures how often the meaning is right."""
+
+import ast
+import re
+from pathlib import Path
 
 import pytest
 from hypothesis import given
