@@ -80,7 +80,7 @@ class Reader:
                 said.negated or said.hearsay or said.conditional or said.question for said in self.seen.statements
             )
             bare = self.asked if not (self.seen.yesno or self.seen.acts or self.seen.feelings) else ""
-            return () if unsure else plain_tags(text, bare)
+            return () if unsure else plain_tags(text, bare, self.seen)
         context = "favourite" if context.startswith("favourite") else context
         alone = tagger().tags(text)
         found = list(tagger().tags(text, context)) if context else list(alone)
