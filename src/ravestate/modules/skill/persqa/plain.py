@@ -56,8 +56,8 @@ def plain_tags(text: str, asked: str, seen: nlp.Analysis | None = None) -> tuple
 def _introduced(seen: nlp.Analysis, asked: str) -> Iterator[Tag]:
     """Yield the name with which the user introduces themselves.
 
-    The parser must take it for a person's name. If the words can only introduce a name, or the agent has asked for the
-    name, a capital is enough, unless the parser finds a people, a place or a date.
+    The parser must take it for a person's name. A capital is enough if the words can only introduce a name, or if the
+    agent has asked for it. Peoples, places and dates have capitals, too, and do not count.
     """
     persons = {entity.text.lower() for entity in seen.entities if entity.label == "PERSON"}
     things = {entity.text for entity in seen.entities if entity.label in _THINGS}
