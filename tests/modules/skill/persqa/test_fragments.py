@@ -63,3 +63,20 @@ def test_the_name_of_somebody_else_is_not_the_users_name(frame: str, name: str) 
 @pytest.mark.parametrize("frame", ["{} speaking", "people call me {}", "you can call me {}", "I'm called {}"])
 def test_an_introduction_in_other_words_gives_the_users_name(frame: str) -> None:
     assert facts(frame.format("Zosia"))["name"] == ("Zosia",)
+
+
+@pytest.mark.parametrize("topic", ["name", "home", "hobby"])
+@pytest.mark.parametrize("text", ["asdkjh asd", "asdkjh", "asdfgh jkl", "xkcdbwq"])
+def test_nonsense_is_no_answer_to_the_agents_question(text: str, topic: str) -> None:
+    reader = Reader(analyse(text, pipeline("")), topic)
+    assert reader.facts() == []
+    assert reader.values_in(text, topic) == []
+
+
+@pytest.mark.parametrize(
+    ("text", "topic"),
+    [("Werner", "name"), ("Jasdeep", "name"), ("Þórdís", "name"), ("Antwerp", "home"), ("Afghanistan", "origin")],
+)
+def test_a_rare_name_is_an_answer_to_the_agents_question(text: str, topic: str) -> None:
+    reader = Reader(analyse(text, pipeline("")), topic)
+    assert {fact.topic: fact.values for fact in reader.facts()} == {topic: (text,)}

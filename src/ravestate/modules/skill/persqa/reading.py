@@ -12,6 +12,7 @@ import itertools
 import re
 from functools import cached_property
 
+from ravestate.language.nonsense import is_nonsense
 from ravestate.language.tagger import Tag, tagger
 from ravestate.modules import nlp
 from ravestate.modules.meta.nlp.phrase import Phrase
@@ -80,7 +81,7 @@ class Reader:
                 said.negated or said.hearsay or said.conditional or said.question for said in self.seen.statements
             )
             bare = self.asked if not (self.seen.yesno or self.seen.acts or self.seen.feelings) else ""
-            return () if unsure else plain_tags(text, bare)
+            return () if unsure else plain_tags(text, bare, self.seen)
         context = "favourite" if context.startswith("favourite") else context
         alone = tagger().tags(text)
         found = list(tagger().tags(text, context)) if context else list(alone)
@@ -149,7 +150,12 @@ class Reader:
         return any(value in part or (part and part in value) for value in values for part in parts)
 
     def value(self, topic: str, text: str) -> str | None:
-        """Return some words as a value of a topic, in memory's spelling; None if they cannot be a value."""
+        """Return some words as a value of a topic, in memory's spelling; None if they cannot be a value.
+
+        Nonsense is no answer to the agent's question: *asdkjh*.
+        """
+        if topic == self.asked and is_nonsense(text):
+            return None
         found = value_of(text, TOPICS[topic], self.seen)
         return NATIONS.get(found.lower(), found) if found and topic == "origin" else found
 

@@ -137,3 +137,27 @@ def test_good_news_in_a_sad_conversation_gets_no_condolence(talk: Talk) -> None:
 @pytest.mark.parametrize("text", ["he swallowed his pride", "the party was on fire", "i have a knife set for sale"])
 def test_harmless_words_are_no_emergency(text: str) -> None:
     assert not is_crisis(text)
+
+
+@pytest.mark.parametrize(
+    "text",
+    [
+        "beats me", "it beats me", "that beats me", "well, that beats me", "No idea, beats me!", "beats me why he left",
+        "it really beats me", "honestly, beats me",
+    ],
+)  # fmt: skip
+def test_an_idiom_for_not_knowing_is_no_cry_for_help(text: str, talk: Talk) -> None:
+    assert not is_crisis(text) and not is_grave(text)
+    assert "emergency number" not in talk.say(text)
+
+
+@pytest.mark.parametrize(
+    "text",
+    [
+        "he beats me", "my dad beats me", "Kevin beats me", "my husband hits me", "dad hits me again",
+        "my mum really beats me", "I have a husband that beats me", "he drinks and then beats me", "beats me up",
+        "beats me when he is drunk", "hits me every night", "it beats me why he hits me",
+    ],
+)  # fmt: skip
+def test_a_cry_for_help_about_violence_is_found(text: str) -> None:
+    assert is_crisis(text) and is_grave(text)
