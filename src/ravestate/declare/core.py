@@ -26,7 +26,8 @@ shutdown = core.signal("shutdown", input=True)
 error = core.signal("error", payload=RuleFailure, input=True)
 """Raised when a rule (L18) or a predicate of its condition fails.
 
-If a run to which this signal has led fails, the signal is not raised again. A predicate raises it at most once.
+If this signal leads to a run, directly or through other runs, and that run fails, the signal is not raised again. Each
+predicate raises it at most once.
 """
 
 activity = core.flag("activity", input=True, keep="latest")

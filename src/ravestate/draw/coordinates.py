@@ -15,7 +15,9 @@ from ravestate.draw.layered import LayeredGraph
 from ravestate.draw.straighten import Straightener
 
 _SWEEPS = 24  # sweeps over all layers, forwards and backwards in turn
-_AHEAD = 0.15  # weight of neighbours that a sweep has not reached yet, relative to neighbours that it has passed
+# The weight of neighbours that a sweep has not reached yet, relative to neighbours that it has passed. It holds only in
+# the first half of the sweeps; later, all neighbours have equal weight.
+_AHEAD = 0.15
 
 
 def assign_coordinates(graph: LayeredGraph, room: float | None = None) -> list[float]:

@@ -174,7 +174,7 @@ class Agenda:
 
     def _may_ask(self, activation: Activation) -> bool:
         """Return whether an activation may ask: it is ready or waits, its guards (slot predicates) are true, and it is
-        not deferred as a turn of a loop (L23)."""
+        not deferred as an iteration of a loop of rules (L23)."""
         if activation.state not in (READY, WAITING):
             return False
         if activation.clause.guards and not self._pass_guards(activation):
@@ -185,9 +185,9 @@ class Agenda:
     def _ask(self, activation: Activation) -> bool:
         """Ask for consent; return whether the activation has it. If not, the activation waits.
 
-        A *bench* keeps spikes that share a second spike. Only one of these pairs has an activation, the *head* of the
-        bench (``benches.py``). If the refused activation is the head of a bench, the bench gets a new head, unless the
-        group of the second spike refuses.
+        A *bench* keeps first spikes, each of which makes a pair with the same second spike. Only one of these pairs has
+        an activation, the *head* of the bench (``benches.py``). If the refused activation is the head of a bench, the
+        bench gets a new head, unless the group of the second spike refuses.
         """
         refusal = self.consent.ask(activation)
         if refusal.names:
@@ -240,7 +240,8 @@ class Agenda:
                 heapq.heappush(breakers, (state.order(best), best))  # its utility has changed since
                 continue
             freed = no_longer_stuck(best, stuck)
-            if not found.issuperset(freed):  # a change after the search has freed some: search again next round
+            # Since an earlier search, a change has freed some activations that it found: search again next round.
+            if not found.issuperset(freed):
                 for other in freed:
                     stuck.discard(other)
                     state.refused[other] = None

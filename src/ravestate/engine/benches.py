@@ -1,12 +1,13 @@
 """Benches: spikes that wait together for a second spike, their *counterpart*.
 
 A clause with two constraints, its *needs*, takes a pair of spikes. The spike that arrives first is the *first spike*.
-It waits in a *half*: a table of such first spikes, without activations (``halves.py``).
+It waits in a *half*: a table of such first spikes, without activations (``halves.py``). A *bench* is a part of a
+half: the first spikes that have no counterpart yet, or those that share one.
 
 Suppose that a hundred first spikes wait when a counterpart arrives. The counterpart completes a hundred pairs. Only one
 pair runs, and the first spikes of the other pairs take the next counterpart (L12). So only the oldest pair gets an
-activation, the *head* of the bench. The other first spikes stay on the bench, and the whole bench takes the next
-counterpart.
+activation, the *head* of the bench. The other first spikes stay on the bench, without activations. The
+whole bench takes the next counterpart.
 
 A clause has benches only if no better clause competes with it (`Half.sole`). The clause's activations wait for no
 rival, so a group refuses them only while one of their slots is taken there. If only the first spike's group refuses the
@@ -175,7 +176,7 @@ class Benches:
             if holder.state >= RUNNING:
                 return
             if holder.state == WAITING and not taken and holder not in self.state.asking:
-                continue  # a group other than the counterpart's refuses this activation
+                continue  # a group refuses this activation, but not the counterpart's group
             if (min([group.id for group in holder.firm_groups()]), holder.id) <= order:
                 return
         self.make(bench, first)

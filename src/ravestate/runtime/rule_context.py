@@ -59,13 +59,14 @@ class RuleContext:
         self.rule = effect.rule
         """The rule of the run."""
         self.origin: Any = effect.origin
-        """The object that code outside the rules passed to ``put`` or ``emit`` with the event that led to this run.
+        """The object that came with the event that led to this run.
 
-        It is None if that code passed no object, or if no event from outside led to the run: then the agent acts on its
-        own initiative. Runs that a detached rule leads to get the object as well. If several spikes of the run have an
-        object, the object of the youngest counts. The spikes of detached constraints count only if no other spike has
-        an object. ``core:error`` has the object of the run that failed. ``core:activity``, ``core:pressure`` and the
-        failure of a predicate have none.
+        The event comes from code outside the rules. That code may pass an object to ``put`` or ``emit``. The origin is
+        None if that code passed no object, or if no event from outside led to the run: then the agent acts on its own
+        initiative. If a detached rule leads to further runs, these get its object as well. If several spikes of the run
+        have an object, the object of the youngest counts. The spikes of detached constraints count only if no other
+        spike has an object. ``core:error`` has the object of the run that failed. ``core:activity``, ``core:pressure``
+        and the failure of a predicate have none.
         """
         self._payloads = effect.payloads
         self._values: dict[str, Any] = effect.values  # type: ignore[assignment]  # made for this run alone

@@ -1,7 +1,8 @@
 """Recognise answers: yes, no, or unsure.
 
-The network (`language.network`) reads the first `LONGEST` characters of a text. The answers in `PLAIN` always count.
-Until the network is loaded, or without the sentence model, only these answers and openings such as *no, ...* count.
+The network (`language.network`) reads the first `LONGEST` characters of a text. The answers in `PLAIN` and
+thumbs (👍, 👎) always count. Until the network is loaded, or without the sentence model, only these answers and openings
+such as *no, ...* count.
 """
 
 from __future__ import annotations

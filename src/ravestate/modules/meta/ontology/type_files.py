@@ -84,7 +84,7 @@ class _Reader:
         self._ends: dict[str, dict[tuple[str, str], str]] = {}
         self._relation_has: dict[str, dict[str, Kind]] = {}
         self._kinds: dict[tuple[bool, str], tuple[str, Kind, str]] = {}
-        """Property (whether it belongs to a relation, name in lower case) → spelling, kind and ``file:line``."""
+        """(Whether a property belongs to a relation, its name in lower case) → its spelling, kind and ``file:line``."""
 
     def read(self, file: str, root: yaml.Node | None) -> None:
         if root is None:

@@ -12,9 +12,9 @@ from .names import output, piece, speaking
 class Listener(Protocol):
     """The user's side of a conversation: it gets the agent's words.
 
-    `origin` is the ``ctx.origin`` of the words: the input that they answer, or None. An utterance grows while a rule
-    produces it piece by piece. If several utterances grow at the same time, `origin` shows to which one a piece
-    belongs.
+    `origin` is the ``ctx.origin`` of the words: the object that came with the input that they answer, or None (see
+    `RuleContext.origin`). An utterance grows while a rule produces it piece by piece. If several utterances grow at the
+    same time, `origin` shows to which one a piece belongs.
     """
 
     def utter(self, text: str, origin: object = None) -> None:

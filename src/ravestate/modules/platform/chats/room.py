@@ -155,7 +155,12 @@ class Room:
         return False
 
     def warn(self, concerned: str, what: str) -> None:
-        """Log a sentence as a warning, but only once for each subject (`concerned`). `what` is the rest of the sentence."""
+        """Log a sentence as a warning, but only once for each beginning.
+
+        Args:
+            concerned: The beginning of the sentence: the person or the room that it is about.
+            what: The rest of the sentence.
+        """
         if concerned not in self._warned:
             self._warned.add(concerned)
             self.log.warning("%s %s", concerned, what)

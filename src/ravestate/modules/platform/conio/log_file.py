@@ -65,7 +65,10 @@ def log_to_file(file: Path) -> Generator[None]:
 
 
 class _LogFile(RotatingFileHandler):
-    """A log file that prints no error on the terminal of the chat, even if the file cannot be written."""
+    """A log file that prints nothing on the terminal of the chat if the file cannot be written.
+
+    It hides only an `OSError`. Other errors, such as a log message with wrong arguments, are printed.
+    """
 
     def handleError(self, record: logging.LogRecord) -> None:
         if not isinstance(sys.exc_info()[1], OSError):

@@ -27,7 +27,7 @@ WRITING = 5000  # a room shows for this many milliseconds that the agent is writ
 
 
 class MatrixCarrier:
-    """Sends messages from an account; see `Carrier`. A homeserver ignores a repeated `Outgoing.key`."""
+    """Sends messages from an account; see `Carrier`. A homeserver drops a message whose `Outgoing.key` it knows."""
 
     longest = longest_caption = 16_000  # the limit of an event is 64 kB
     rate = 50.0
@@ -103,7 +103,7 @@ class MatrixCarrier:
             return decrypt_attachment(data, found["key"]["k"], found["hashes"]["sha256"], found["iv"])
 
     async def show_work(self, chat: str, words: str) -> None:
-        """Show in the room that the agent is writing. Matrix has no way to show the words so far."""
+        """Show in the room that the agent is writing. Matrix cannot show the words that are written so far."""
         with _delivery():
             await self._client.room_typing(chat, True, timeout=WRITING)
 
@@ -124,7 +124,10 @@ def _checked(answer: Any) -> Any:
 
 @contextlib.contextmanager
 def _undamaged() -> Generator[None]:
-    """Turn the errors of a damaged or forged file into a `DeliveryError`. Its sender has written all of its fields."""
+    """Turn the errors of a damaged or forged file into a `DeliveryError`.
+
+    The sender has written all fields of the file, so no field can be trusted.
+    """
     try:
         yield
     except (EncryptionError, LookupError, TypeError, ValueError, AttributeError, ArithmeticError) as error:

@@ -244,10 +244,11 @@ async def speak(ctx: rs.RuleContext) -> rs.Resign | None:
         return rs.Resign("the line is closed")
     growing = talk.mouth.growing
     rest = None if growing is None else rawio.rest(text, growing.text)
+    # If no rule sets `rawio.speaking`, only a `text` that does not continue `growing` shows that `growing` has ended.
     if growing is not None and (rest is not None or not ctx[rawio.speaking]):
         talk.mouth.growing = None
         growing.grow(rest or "")
-        growing.finish()  # if no rule sets `rawio.speaking`, only the new utterance shows that the old one has ended
+        growing.finish()
         if growing.over and rest is not None:  # the utterance was cut off while it grew; note the heard part now
             ctx[rawio.heard] = growing.heard
     if rest is None and speakable(text):
@@ -346,7 +347,10 @@ async def hold(ctx: rs.RuleContext) -> rs.Resign | None:
     background=True,
 )
 async def give_way(ctx: rs.RuleContext) -> None:
-    """End the agent's utterance if the user keeps speaking: an "mhm" would be shorter."""
+    """End the agent's utterance if the user keeps speaking for the seconds in the setting `back_channel`.
+
+    An "mhm" is shorter than that.
+    """
     await ctx.sleep(ctx.settings.back_channel)
     ctx.emit(barge_in)
 

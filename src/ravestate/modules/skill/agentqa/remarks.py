@@ -1,7 +1,7 @@
 """Remarks that the agent must answer, such as signs of distress.
 
-A remark fits an expression of a topic, or shows a topic's act or feeling. An act is a kind of utterance, such as an
-insult.
+A remark matches an expression of a topic, or shows an act or a feeling that the topic lists. An act is a kind of
+utterance, such as an insult.
 """
 
 from __future__ import annotations

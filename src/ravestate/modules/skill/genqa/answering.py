@@ -42,7 +42,8 @@ passages need not have words of the question."""
 LEVEL = 0.8
 """Two scores count as equal if they differ by less than this."""
 COMMON = 20_000
-"""The search skips a word that is in more passages than this, unless all words of the question are so common."""
+"""The first search (for any word) skips words that are in more passages than this, unless all words of the question are
+so common."""
 NAMES, KINDS = 0.4, 0.7
 """If a follow-up has only names, these values replace the share of its words in a passage: `KINDS` if the passage has a
 word of `Question.kinds`, `NAMES` if not."""
@@ -87,8 +88,8 @@ class Answer:
 def together(answers: Sequence[Answer]) -> Answer:
     """Return the answers to several questions of one utterance as one answer, with the lowest of their confidences.
 
-    The answer names its sources only if each part comes from a document. Otherwise it would name a wrong source for
-    the parts that were written for Ravestate.
+    The answer names its sources only if each part comes from a document. Otherwise, a sentence that was
+    written for Ravestate, or a computed result, would seem to come from one of the documents.
     """
     if len(answers) == 1:
         return answers[0]
@@ -135,9 +136,10 @@ class Answerer:
         self._stems: Stems | None = None
 
     def load(self) -> None:
-        """Open the index, add the collection, and load the reader, unless this is done already. `answer` does the same.
+        """Open the index, add the collection, and load the reader, unless this is done already.
 
-        Without documents, the reader is not loaded.
+        Without documents, the reader is not loaded. `answer` does the same, but loads the reader only if it has
+        retrieved a passage.
 
         Raises:
             PlatformError: The index cannot be opened, or the reader is not installed.
@@ -254,7 +256,8 @@ class Answerer:
                 and (not counted or any(form in each.text.lower() for form in counted))
             ):
                 retrieved.append((covered, each))
-        # The sort is stable, so passages with equal shares stay in the order of BM25.
+        # If passages have equal shares, plain passages (`_is_plain`) come first. The sort is stable, so apart from
+        # that, they stay in the order of BM25.
         return sorted(retrieved, key=lambda each: (-each[0], not _is_plain(question, each[1].text)))
 
     def _read(self, question: Question, retrieved: Sequence[tuple[float, Found]]) -> list[Candidate]:
@@ -275,8 +278,8 @@ class Answerer:
         if question.follows:
             return sorted(read, key=lambda candidate: -_chance(question, candidate))
         read.sort(key=lambda candidate: -candidate.score)
-        # Among equals, take the passage with the fewest words that the question does not have. So the answer about life
-        # expectancy is not the passage about the life expectancy of women.
+        # Among equals, take a plain passage (`_is_plain`), and then the passage with the fewest words that the question
+        # does not have. So the answer about life expectancy is not the passage about the life expectancy of women.
         level = [c for c in read if c.score > read[0].score - LEVEL and c.covered >= read[0].covered]
         asked = {form for word in question.words for form in variants_of(word.lower())}
         first = min(level, key=lambda one: (not _is_plain(question, one.text), _besides(one.text, asked)))

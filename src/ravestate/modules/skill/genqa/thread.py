@@ -24,7 +24,7 @@ LONGEST = 200
 KEPT = 6
 """The maximum number of questions in the thread."""
 REMEMBERED = 120.0
-"""Seconds for which later questions may refer to a question."""
+"""Later questions may refer to a question for this many seconds."""
 LESS = -0.15
 """The usual change of the log odds from one reading to the next."""
 _ONES = ("one", "ones", "former", "latter")
@@ -339,7 +339,8 @@ class _Follow:
     def _chosen(self, one: Word) -> Iterator[Reading]:
         """Yield the questions that *the first one* or *the other one* may stand for.
 
-        It may mean a member of a list, the subject of an earlier question, or a rank.
+        It may mean a member of a list, the subject of an earlier question, a rank, or a kind of thing. For example,
+        *the biggest one* may mean the biggest volcano.
         """
         own = [word for word in phrase_of(self.tree, one) if word in self.words]
         before = self.tree.before(own[0])
@@ -366,8 +367,9 @@ class _Follow:
         """Yield earlier questions, latest first, with new words in place of a part of the same kind.
 
         A part is the question word (*and when?*), the rank (*and the second highest?*), a name or a noun. A new question
-        word gives one question at most. If a noun follows the same preposition (*and of Spain?*), only such nouns are
-        replaced.
+        word gives one question at most. If the new words begin with a preposition (*and of Spain?*), names and nouns
+        after the same preposition are replaced; if there are none, any are. Such words also give one more question: the
+        last question with these words at its end.
         """
         if not new:
             return

@@ -21,7 +21,7 @@ class Topic:
     """Something to know about a person: a row of ``topics.yaml``. That file explains the columns."""
 
     name: str
-    """The topic's name. In a phrase, a parameter of this name stands for the values."""
+    """The topic's name. In a phrase, a parameter with this name, such as ``{home}``, stands for the values."""
     kind: Kind
     clause: str
     relation: str = ""
@@ -127,9 +127,12 @@ def due(
 ) -> str:
     """Return the topic to ask about next, or an empty string.
 
-    The topic with the fewest tries comes first. If several have the fewest, the name comes first. Then come the topics
-    whose `only_with` is the topic `last`, and then the topics in `touched`. Topics that do not suit the user's age,
-    that need another fact, or whose typical words the user has not said are left out.
+    The topic with the fewest tries comes first. If several have the fewest, the topic `name` comes first. Then come
+    the topics whose `only_with` is the topic `last`, and then the topics in `touched`.
+
+    A topic is left out if it does not suit the user's age, or if it needs a fact that is not known. It is also left out
+    if the user has said none of its typical words, or if a topic in its `besides` is known. The topic `employer` is
+    left out if the user's occupation has no employer.
 
     Args:
         wanted: The names of the topics to choose from.

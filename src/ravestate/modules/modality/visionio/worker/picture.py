@@ -1,4 +1,4 @@
-"""A picture in the worker: scaled down for a quick search, with the size of the original."""
+"""A picture in the worker, scaled down for a quick search. It also records the size of the original."""
 
 from __future__ import annotations
 
