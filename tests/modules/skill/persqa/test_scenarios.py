@@ -393,7 +393,7 @@ def at_once(sim: Simulation, *texts: str) -> None:
 def test_the_facts_of_simultaneous_utterances_are_all_learnt(file: Path, look: Look) -> None:
     with agent(file) as sim:
         at_once(sim, "my name is ada", "i live in ulm", "my hobby is chess", "i work as a baker")
-        assert meant(sim.said[0], "learned_name")
+        assert any(meant(said, "learned_name") for said in sim.said)  # the answers may come in any order
         at_once(sim, "i moved to bremen", "my hobby is judo", "my dog is called rex", "my friend is called tom")
         assert dict(sim.read(persqa.facts)) == {
             "home": ("Bremen",),
@@ -436,7 +436,7 @@ def test_a_user_can_go_on_talking_while_memory_looks_them_up(file: Path, look: L
         at_once(sim, "my name is ada", "i live in ulm", "my hobby is chess")
     with agent(file) as sim:
         at_once(sim, "my name is ada", "i live in bremen", "my hobby is judo")
-        assert meant(sim.said[0], "welcome_back")
+        assert any(meant(said, "welcome_back") for said in sim.said)  # the answers may come in any order
         assert dict(sim.read(persqa.facts)) == {"home": ("Bremen",), "hobby": ("chess", "judo")}
     assert look() == {"Ada": {"lives_in": ["Bremen"], "has_hobby": ["chess", "judo"]}}
 
