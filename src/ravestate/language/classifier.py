@@ -2,10 +2,11 @@
 
 from __future__ import annotations
 
-from .network import LONGEST, Network, network
+from .head import Head
+from .network import LONGEST
 
 
-class Classifier:
+class Classifier(Head):
     """A head of the network that puts the first `LONGEST` characters of a text into a class. Thread-safe.
 
     `Matcher` learns from a few examples when the program starts. A classifier needs thousands of examples and a
@@ -18,30 +19,6 @@ class Classifier:
             classifier.load()
             classifier.best("You bet.")     # ("yes 2", 0.98)
     """
-
-    def __init__(self, head: str, source: Network | None = None) -> None:
-        """Choose a head of the network; load nothing yet.
-
-        Args:
-            head: The head's name.
-            source: The network; by default, the bundled network.
-        """
-        self._head = head
-        self._network = source or network()
-
-    @property
-    def loaded(self) -> bool:
-        """Whether the network is ready."""
-        return self._network.loaded
-
-    def load(self) -> None:
-        """Load the network, once. This raises the same errors as `Network.load`."""
-        self._network.load()
-
-    @property
-    def labels(self) -> list[str]:
-        """The classes; none before `load`."""
-        return self._network.labels(self._head)
 
     def best(self, text: str) -> tuple[str, float]:
         """Return the likeliest class of a text in normal form, and its probability; an empty class before `load`.
@@ -58,6 +35,6 @@ class Classifier:
         outputs = self._network.read(text[:LONGEST])
         if not outputs:
             return []
-        chances = outputs[self._head]
+        chances = outputs[self._name]
         order: list[int] = (-chances).argsort(kind="stable").tolist()
         return [(self.labels[place], float(chances[place])) for place in order]

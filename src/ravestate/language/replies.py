@@ -10,35 +10,22 @@ from __future__ import annotations
 from collections.abc import Mapping
 from functools import lru_cache
 
-from .network import LONGEST, Network, network
+from .head import Head
+from .network import LONGEST, Network
 
 REMEMBERED = 8
 """The number of texts whose grades are kept as mappings. A text takes 200 kB."""
-HEAD, KINDS, LIKELY = "replies", "reply_kinds", "likely"
+GRADES, KINDS, LIKELY = "replies", "reply_kinds", "likely"
 """The grades of the replies and their labels; the kind of each reply; the probability of each reply's kind."""
 
 
-class Replies:
+class Replies(Head):
     """The head of the network that grades replies to a text. Thread-safe."""
 
     def __init__(self, source: Network | None = None) -> None:
         """Choose the network (by default, the bundled network); load nothing yet."""
-        self._network = source or network()
+        super().__init__(GRADES, source)
         self._latest = lru_cache(REMEMBERED)(self._graded)
-
-    @property
-    def loaded(self) -> bool:
-        """Whether the network is ready."""
-        return self._network.loaded
-
-    def load(self) -> None:
-        """Load the network, once. This raises the same errors as `Network.load`."""
-        self._network.load()
-
-    @property
-    def labels(self) -> list[str]:
-        """The replies; none before `load`."""
-        return self._network.labels(HEAD)
 
     def grades(self, text: str, before: str = "", said: str = "") -> Mapping[str, tuple[float, float]]:
         """Return for each reply its expected grade, 0 to 2, and the probability of its kind.
@@ -62,7 +49,7 @@ class Replies:
         outputs = self._network.read(text, before=before, said=said)
         if not outputs:
             return {}
-        return dict(zip(self.labels, zip(outputs[HEAD].tolist(), outputs[LIKELY].tolist(), strict=True), strict=True))
+        return dict(zip(self.labels, zip(outputs[GRADES].tolist(), outputs[LIKELY].tolist(), strict=True), strict=True))
 
 
 _REPLIES = Replies()

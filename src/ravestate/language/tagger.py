@@ -5,7 +5,8 @@ from __future__ import annotations
 from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
-from .network import Network, network
+from .head import Head
+from .network import Network
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
@@ -13,7 +14,7 @@ if TYPE_CHECKING:
     import numpy as np
     from numpy.typing import NDArray
 
-HEAD, DENIALS = "facts", "denials"
+FACTS, DENIALS = "facts", "denials"
 """The outputs of the network: the chance of each class for each token, and the chance that a token is denied."""
 
 
@@ -33,7 +34,7 @@ class Tag:
     """The confidence, 0 to 1: the mean over the tokens."""
 
 
-class Tagger:
+class Tagger(Head):
     """The head of the network that labels the words of a text. Thread-safe.
 
     For each token, the network says whether a value begins there, goes on there, or neither (the BIO scheme). It also says
@@ -49,16 +50,7 @@ class Tagger:
 
     def __init__(self, source: Network | None = None) -> None:
         """Choose the network (by default, the bundled network); load nothing yet."""
-        self._network = source or network()
-
-    @property
-    def loaded(self) -> bool:
-        """Whether the network is ready."""
-        return self._network.loaded
-
-    def load(self) -> None:
-        """Load the network, once. This raises the same errors as `Network.load`."""
-        self._network.load()
+        super().__init__(FACTS, source)
 
     def tags(self, text: str, context: str = "") -> list[Tag]:
         """Return the tags of a text in their order; nothing before `load`.
@@ -69,11 +61,11 @@ class Tagger:
         """
         if not self.loaded:
             return []
-        labels = self._network.labels(HEAD)
+        labels = self.labels
         outputs = self._network.read(text, asked=labels.index(context) + 1 if context in labels else 0)
         if not outputs:
             return []
-        return _decoded(text, labels, outputs["spans"].tolist(), outputs[HEAD], outputs[DENIALS])
+        return _decoded(text, labels, outputs["spans"].tolist(), outputs[FACTS], outputs[DENIALS])
 
 
 def _decoded(

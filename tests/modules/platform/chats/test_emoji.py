@@ -1,6 +1,7 @@
 """A text is an emoji if it is exactly one emoji, as Unicode defines one."""
 
 import pytest
+import regex
 
 from ravestate.modules.platform.chats.emoji import is_emoji
 
@@ -24,7 +25,6 @@ def test_a_text_with_several_emoji_or_none_is_no_emoji(text: str) -> None:
 
 
 def test_each_character_is_an_emoji_exactly_if_unicode_says_so() -> None:
-    regex = pytest.importorskip("regex", reason="knows Unicode's properties of emoji")
     characters = "".join(map(chr, range(0x20000)))  # no emoji lies beyond
     known = regex.findall(r"[^\p{Cn}\p{Regional_Indicator}0-9#*]", characters)
     assert [each for each in known if is_emoji(each)] == regex.findall(r"\p{Emoji_Presentation}", "".join(known))

@@ -6,7 +6,7 @@ import contextlib
 import logging
 from collections.abc import AsyncGenerator, Iterable
 from pathlib import Path
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, cast
 
 from starlette.applications import Starlette
 from starlette.datastructures import Headers, MutableHeaders
@@ -42,7 +42,7 @@ def make_app(agent: Agent, routes: Iterable[BaseRoute] = (), inside: str | None 
 
     For the arguments and errors, see `webio.app`.
     """
-    settings = _settings_of(agent)
+    settings = settings_of(agent)
     access = Access(settings)
     sessions = Sessions(agent, limit=settings.sessions, keep=settings.keep)
 
@@ -68,13 +68,18 @@ def make_app(agent: Agent, routes: Iterable[BaseRoute] = (), inside: str | None 
     return app
 
 
-def _settings_of(agent: Agent) -> Settings:
+def settings_of(agent: Agent) -> Settings:
+    """Return the settings of webio in an agent.
+
+    Raises:
+        PlatformError: The agent lacks `webio`, or has `conio`.
+    """
     names = [module.name for module in agent.policy.modules]
     if "webio" not in names:
         raise PlatformError(f"the agent has no webio: write Agent(webio, ...); it has {', '.join(names)}")
     if "conio" in names:  # the context of each visitor would contain conio
         raise PlatformError("webio has many users, conio has one: leave conio out")
-    return agent.settings["webio"]  # type: ignore[return-value]  # the settings class of webio
+    return cast("Settings", agent.settings["webio"])
 
 
 class AccessMiddleware:

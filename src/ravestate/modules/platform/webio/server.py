@@ -19,7 +19,7 @@ import uvicorn
 from ravestate.errors import PlatformError
 
 from .access import is_local
-from .application import make_app
+from .application import make_app, settings_of
 from .channel import LONGEST
 from .limits import LimitedHTTP, LimitedWebSocket
 
@@ -28,7 +28,6 @@ if TYPE_CHECKING:
 
     from ravestate.runtime.agent import Agent
 
-    from .names import Settings
 
 SPARE = 128  # the number of open files that the server leaves to the rest of the process
 BACKLOG = 256  # how many connections the system accepts before the server takes them
@@ -74,7 +73,7 @@ class Server:
     def __init__(self, agent: Agent, routes: Iterable[BaseRoute] = (), inside: str | None = None) -> None:
         self.app = make_app(agent, routes, inside)
         """The application that the server serves."""
-        self._settings: Settings = agent.settings["webio"]  # type: ignore[assignment]  # the settings class of webio
+        self._settings = settings_of(agent)
         if self._settings.token is None and not is_local(self._settings.host):
             raise PlatformError(
                 f"webio: other machines can reach {self._settings.host!r}, so a token is needed: set "
