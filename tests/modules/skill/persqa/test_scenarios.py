@@ -468,6 +468,13 @@ def test_a_new_user_who_corrects_their_name_is_renamed(file: Path, look: Look) -
     assert look() == {"Bob": {"lives_in": ["Ulm"]}}
 
 
+def test_nonsense_after_an_introduction_does_not_rename_the_user(file: Path, look: Look) -> None:
+    with agent(file) as sim:
+        sim.say("hi im nora")
+        sim.say("asdkjh qwe")
+    assert look() == {"Nora": {}}
+
+
 def test_a_user_taken_for_another_person_does_not_change_that_persons_facts(file: Path, look: Look) -> None:
     with agent(file) as sim:
         sim.say("my name is ada and i live in hannover")

@@ -71,10 +71,10 @@ class Reader:
 
     @cached_property
     def tags(self) -> tuple[Tag, ...]:
-        """The values that the utterance states or denies."""
+        """The values that the utterance states or denies. Nonsense, such as *asdkjh qwe*, has none."""
         context = self.asked or (self.person if _PRONOUN.search(self.tree.text) else "")
         text = self.tree.text
-        if len(self.seen.text) > LONGEST:
+        if len(self.seen.text) > LONGEST or is_nonsense(self.seen.text):
             return ()
         if not tagger().loaded:
             unsure = any(
